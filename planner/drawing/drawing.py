@@ -1,0 +1,39 @@
+"""What a drawing is to the planner: visible outlines as chains of cubic curves, in the SVG's own units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from planner.arrays import FloatArray
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Outline:
+    """One subpath: consecutive cubic Bezier curves, a straight line being a cubic whose
+    control points lie on it.
+
+    beziers: (n_curves, 4, 2), user units; curve k ends exactly where curve k + 1 begins. A subpath of
+    zero length is one curve with four equal points: a pen tap. A closed subpath ends where it began.
+    """
+
+    beziers: FloatArray
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Drawing:
+    """All visible outlines of an SVG in document order.
+
+    outlines: in user units, the coordinate system that the children of the outermost `svg`
+        element draw in (viewBox coordinates where it has one), transforms applied.
+    user_to_page: (2, 3) affine [[a, c, e], [b, d, f]] from user units to millimetres on the page,
+        x to the right and y down from the top left corner (viewBox and preserveAspectRatio applied).
+    page_mm: width and height of the page.
+    skipped: how many things of each kind could not be drawn, e.g. {"text": 2, "image": 1}.
+    """
+
+    source: str
+    outlines: tuple[Outline, ...]
+    user_to_page: FloatArray
+    page_mm: tuple[float, float]
+    skipped: Mapping[str, int] = field(default_factory=dict)
