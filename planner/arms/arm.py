@@ -1,0 +1,196 @@
+"""An arm as a value: its Denavit-Hartenberg chain, its limits, and how it keeps a pen to the paper.
+
+Standard DH: row (theta, d, a, alpha) is `Rz(theta) Tz(d) Tx(a) Rx(alpha)`; a revolute joint adds its
+position to theta, a prismatic one to d. The paper is the plane z = 0 of the base frame, and the tip of
+the pen is the origin of the last frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+
+import numpy as np
+
+from planner.arrays import FloatArray
+
+
+class JointKind(StrEnum):
+    REVOLUTE = "revolute"
+    PRISMATIC = "prismatic"
+
+
+class PenHold(StrEnum):
+    """What keeps the pen to the paper, and so which equations a posture has to meet beside the tip's place."""
+
+    COUPLING = "coupling"
+    """Linear couplings between joints keep it upright: nothing to solve for."""
+    CONSTRUCTION = "construction"
+    """The chain itself keeps it upright (SCARA): nothing to solve for."""
+    TOOL_AXIS = "tool_axis"
+    """An axis of the last frame has to point straight down, spin about it is free: two equations."""
+    FREE = "free"
+    """Only the tip is held; the tilt is whatever the chain gives."""
+
+
+@dataclass(frozen=True, slots=True)
+class Servo:
+    """The servo behind a joint, where known: pulse = pulse_at_zero_us + us_per_deg * angle."""
+
+    pulse_at_zero_us: float
+    us_per_deg: float
+    pulse_range_us: tuple[float, float]
+    resolution_us: float
+    dead_band_us: float
+    backlash_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """One DH row and its limits: rad, rad/s, ... for a revolute joint, mm, mm/s, ... for a prismatic one."""
+
+    name: str
+    kind: JointKind
+    theta_rad: float
+    d_mm: float
+    a_mm: float
+    alpha_rad: float
+    minimum: float
+    maximum: float
+    max_velocity: float
+    max_acceleration: float
+    max_jerk: float
+    servo: Servo | None = None
+
+    @property
+    def file_unit(self) -> str:
+        """Unit of this joint in files and on the screen: "deg" or "mm"."""
+        return "deg" if self.kind is JointKind.REVOLUTE else "mm"
+
+    @property
+    def per_file_unit(self) -> float:
+        """How much of the inner unit (rad or mm) one file unit (deg or mm) is."""
+        return float(np.pi / 180) if self.kind is JointKind.REVOLUTE else 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """Joint `joint` follows others: q[joint] = constant_rad + sum of coefficient * q[other]."""
+
+    joint: int
+    constant_rad: float
+    coefficients: tuple[tuple[int, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Pen:
+    """How the pen is held and lifted. `tool_axis` is a unit vector of the last frame that points out of the nib."""
+
+    hold: PenHold
+    tool_axis: tuple[float, float, float]
+    lift_mm: float
+    clearance_mm: float
+
+
+@dataclass(frozen=True, slots=True)
+class Workspace:
+    """What the builder says of the paper: the inner radius that the pen stays out of, and how close to a
+    singular posture drawing may come.
+
+    min_tip_speed_mm_s: a posture counts as usable where the tip can move at least this fast in every
+        direction with the joints within their speeds (smallest singular value of J diag(speeds)).
+    """
+
+    inner_radius_mm: float
+    min_tip_speed_mm_s: float
+
+
+@dataclass(frozen=True, eq=False)
+class Arm:
+    """A checked arm. Joint arrays are in chain order, in rad or mm."""
+
+    name: str
+    source: str
+    joints: tuple[Joint, ...]
+    couplings: tuple[Coupling, ...]
+    pen: Pen
+    workspace: Workspace
+
+    @property
+    def n_joints(self) -> int:
+        return len(self.joints)
+
+    def _column(self, key: str) -> FloatArray:
+        column = np.array([getattr(joint, key) for joint in self.joints], dtype=np.float64)
+        column.setflags(write=False)
+        return column
+
+    @cached_property
+    def minimum(self) -> FloatArray:
+        return self._column("minimum")
+
+    @cached_property
+    def maximum(self) -> FloatArray:
+        return self._column("maximum")
+
+    @cached_property
+    def max_velocity(self) -> FloatArray:
+        return self._column("max_velocity")
+
+    @cached_property
+    def max_acceleration(self) -> FloatArray:
+        return self._column("max_acceleration")
+
+    @cached_property
+    def max_jerk(self) -> FloatArray:
+        return self._column("max_jerk")
+
+    @cached_property
+    def per_file_unit(self) -> FloatArray:
+        """(n_joints,) inner units in one file unit."""
+        return self._column("per_file_unit")
+
+    @cached_property
+    def free_joints(self) -> tuple[int, ...]:
+        """Indices of the joints that no coupling drives."""
+        driven = {coupling.joint for coupling in self.couplings}
+        return tuple(index for index in range(self.n_joints) if index not in driven)
+
+    @cached_property
+    def coupling_matrix(self) -> tuple[FloatArray, FloatArray]:
+        """(C, c) with q = C q_free + c: shapes (n_joints, n_free) and (n_joints,)."""
+        matrix = np.zeros((self.n_joints, len(self.free_joints)))
+        constant = np.zeros(self.n_joints)
+        column = {joint: k for k, joint in enumerate(self.free_joints)}
+        for joint, k in column.items():
+            matrix[joint, k] = 1.0
+        for coupling in self.couplings:
+            constant[coupling.joint] = coupling.constant_rad
+            for other, coefficient in coupling.coefficients:
+                matrix[coupling.joint, column[other]] = coefficient
+        matrix.setflags(write=False)
+        constant.setflags(write=False)
+        return matrix, constant
+
+    def complete(self, free: FloatArray) -> FloatArray:
+        """All joints (..., n_joints) from the free ones (..., n_free), couplings applied."""
+        matrix, constant = self.coupling_matrix
+        joints: FloatArray = free @ matrix.T + constant
+        return joints
+
+    def to_file_units(self, positions: FloatArray) -> FloatArray:
+        """(..., n_joints) from rad or mm to the degrees and millimetres of files."""
+        converted: FloatArray = positions / self.per_file_unit
+        return converted
+
+    def from_file_units(self, positions: FloatArray | Sequence[float]) -> FloatArray:
+        """(..., n_joints) from the degrees and millimetres of files to rad or mm."""
+        converted: FloatArray = np.asarray(positions, dtype=np.float64) * self.per_file_unit
+        return converted
+
+    @property
+    def column_names(self) -> tuple[str, ...]:
+        """Names of the joint columns in a trajectory file, such as `q1_deg`."""
+        return tuple(f"{joint.name}_{joint.file_unit}" for joint in self.joints)

@@ -1,0 +1,232 @@
+"""Arm files: `configs/NAME.toml`, in degrees, millimetres and seconds, checked whole before use."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+
+from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Servo, Workspace
+from planner.errors import ArmFileError, UnknownArm
+
+DEFAULT_ARM = "drawing_arm"
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Number = Annotated[float, Field(allow_inf_nan=False)]
+
+
+def _is_column_name(name: str) -> str:
+    if not (name.isidentifier() and name.isascii()):
+        raise ValueError("must be letters, digits and underscores, and not begin with a digit")
+    return name
+
+
+Name = Annotated[str, AfterValidator(_is_column_name)]
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class _ServoSection(_Section):
+    pulse_at_zero_us: Number
+    us_per_deg: Number
+    pulse_range_us: Annotated[list[Positive], Field(min_length=2, max_length=2)]
+    resolution_us: NotNegative = 1.0
+    dead_band_us: NotNegative = 0.0
+    backlash_deg: NotNegative = 0.0
+
+
+class _JointBase(_Section):
+    name: Name
+    theta_deg: Number = 0.0
+    d_mm: Number = 0.0
+    a_mm: Number = 0.0
+    alpha_deg: Number = 0.0
+    servo: _ServoSection | None = None
+
+
+class _RevoluteSection(_JointBase):
+    kind: Literal["revolute"]
+    min_deg: Number
+    max_deg: Number
+    max_velocity_deg_s: Positive
+    max_acceleration_deg_s2: Positive
+    max_jerk_deg_s3: Positive
+
+
+class _PrismaticSection(_JointBase):
+    kind: Literal["prismatic"]
+    min_mm: Number
+    max_mm: Number
+    max_velocity_mm_s: Positive
+    max_acceleration_mm_s2: Positive
+    max_jerk_mm_s3: Positive
+
+
+class _CouplingSection(_Section):
+    joint: str
+    constant_deg: Number
+    coefficients: dict[str, Number]
+
+
+class _PenSection(_Section):
+    hold: Literal["coupling", "construction", "tool_axis", "free"]
+    tool_axis: Annotated[list[Number], Field(min_length=3, max_length=3)] = Field(default=[1.0, 0.0, 0.0])
+    lift_mm: Positive
+    clearance_mm: Positive = 1.0
+
+
+class _WorkspaceSection(_Section):
+    inner_radius_mm: NotNegative
+    min_tip_speed_mm_s: Positive = 80.0
+
+
+class _ArmSection(_Section):
+    name: Name
+    source: str
+    pen: _PenSection
+    workspace: _WorkspaceSection
+    joints: Annotated[
+        list[Annotated[_RevoluteSection | _PrismaticSection, Field(discriminator="kind")]], Field(min_length=1)
+    ]
+    coupling: list[_CouplingSection] = []
+
+
+def arms_folder() -> Path:
+    """Where the arm files live: inside the installed package, or at the top of a checkout."""
+    package = Path(__file__).resolve().parent.parent
+    installed = package / "configs"
+    return installed if installed.is_dir() else package.parent / "configs"
+
+
+def known_arms() -> tuple[str, ...]:
+    """Names of the arms that come with the planner, sorted."""
+    return tuple(sorted(path.stem for path in arms_folder().glob("*.toml")))
+
+
+def load_arm(name_or_file: str) -> Arm:
+    """The arm of that name, or of that file if it ends in `.toml`.
+
+    Errors: UnknownArm, ArmFileError (which lists every fault in the file).
+    """
+    if name_or_file.endswith(".toml"):
+        return read_arm_file(Path(name_or_file))
+    if name_or_file not in known_arms():
+        raise UnknownArm(name_or_file, known_arms())
+    return read_arm_file(arms_folder() / f"{name_or_file}.toml")
+
+
+def read_arm_file(path: Path) -> Arm:
+    """Read, check and convert one arm file. Errors: ArmFileError with all faults."""
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ArmFileError(str(path), [f"cannot be read: {error.strerror}"]) from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ArmFileError(str(path), [f"is not TOML: {error}"]) from error
+    try:
+        section = _ArmSection.model_validate(content)
+    except ValidationError as error:
+        raise ArmFileError(str(path), [_fault(detail) for detail in error.errors()]) from error
+    faults = _contradictions(section)
+    if faults:
+        raise ArmFileError(str(path), faults)
+    return _arm(section)
+
+
+def _fault(detail: Any) -> str:
+    """One pydantic complaint as `key: what is wrong (value)`."""
+    key = ""
+    for part in detail["loc"]:
+        if part in ("revolute", "prismatic"):  # the union's tag, which is no key of the file
+            continue
+        key += f"[{part}]" if isinstance(part, int) else (f".{part}" if key else str(part))
+    message = {"extra_forbidden": "unknown key", "missing": "missing"}.get(detail["type"], detail["msg"])
+    value = "" if detail["type"] in ("missing", "union_tag_not_found") else f" (value: {detail['input']!r:.60})"
+    return f"{key}: {message}{value}"
+
+
+def _limits(joint: _RevoluteSection | _PrismaticSection) -> tuple[float, float]:
+    if isinstance(joint, _RevoluteSection):
+        return joint.min_deg, joint.max_deg
+    return joint.min_mm, joint.max_mm
+
+
+def _contradictions(section: _ArmSection) -> list[str]:
+    """Faults that only show when keys are seen together."""
+    faults = []
+    names = [joint.name for joint in section.joints]
+    for index, joint in enumerate(section.joints):
+        if names.index(joint.name) != index:
+            faults.append(f"joints[{index}].name: '{joint.name}' is used twice")
+        minimum, maximum = _limits(joint)
+        if minimum >= maximum:
+            faults.append(f"joints[{index}]: the lower limit {minimum:g} is not below the upper limit {maximum:g}")
+        if joint.servo is not None:
+            low, high = joint.servo.pulse_range_us
+            if low >= high:
+                faults.append(f"joints[{index}].servo.pulse_range_us: {low:g} is not below {high:g}")
+    driven = [coupling.joint for coupling in section.coupling]
+    for index, coupling in enumerate(section.coupling):
+        key = f"coupling[{index}]"
+        for name in (coupling.joint, *coupling.coefficients):
+            if name not in names:
+                faults.append(f"{key}: there is no joint '{name}' (joints: {', '.join(names)})")
+            elif section.joints[names.index(name)].kind != "revolute":
+                faults.append(f"{key}: joint '{name}' is prismatic; couplings hold between revolute joints")
+        if driven.index(coupling.joint) != index:
+            faults.append(f"{key}.joint: '{coupling.joint}' is driven by two couplings")
+        for name in coupling.coefficients:
+            if name in driven:
+                faults.append(f"{key}.coefficients: '{name}' is itself driven by a coupling")
+    pen = section.pen
+    if pen.hold == "coupling" and not section.coupling:
+        faults.append("pen.hold: 'coupling' needs at least one [[coupling]]")
+    if pen.clearance_mm > pen.lift_mm:
+        faults.append(f"pen.clearance_mm: {pen.clearance_mm:g} is above pen.lift_mm {pen.lift_mm:g}")
+    if pen.hold == "tool_axis" and math.hypot(*pen.tool_axis) < 1e-9:
+        faults.append("pen.tool_axis: has no direction")
+    return faults
+
+
+def _joint(section: _RevoluteSection | _PrismaticSection) -> Joint:
+    if isinstance(section, _RevoluteSection):
+        limits = (section.min_deg, section.max_deg, section.max_velocity_deg_s,
+                  section.max_acceleration_deg_s2, section.max_jerk_deg_s3)
+        minimum, maximum, velocity, acceleration, jerk = (math.radians(value) for value in limits)
+    else:
+        minimum, maximum, velocity, acceleration, jerk = (
+            section.min_mm, section.max_mm, section.max_velocity_mm_s,
+            section.max_acceleration_mm_s2, section.max_jerk_mm_s3)
+    servo = None
+    if section.servo is not None:
+        low, high = section.servo.pulse_range_us
+        servo = Servo(section.servo.pulse_at_zero_us, section.servo.us_per_deg, (low, high),
+                      section.servo.resolution_us, section.servo.dead_band_us, section.servo.backlash_deg)
+    return Joint(section.name, JointKind(section.kind), math.radians(section.theta_deg), section.d_mm,
+                 section.a_mm, math.radians(section.alpha_deg), minimum, maximum, velocity, acceleration,
+                 jerk, servo)
+
+
+def _arm(section: _ArmSection) -> Arm:
+    names = [joint.name for joint in section.joints]
+    couplings = tuple(
+        Coupling(names.index(coupling.joint), math.radians(coupling.constant_deg),
+                 tuple((names.index(name), value) for name, value in coupling.coefficients.items()))
+        for coupling in section.coupling
+    )
+    length = math.hypot(*section.pen.tool_axis)
+    x, y, z = (component / length if length else component for component in section.pen.tool_axis)
+    return Arm(
+        name=section.name,
+        source=section.source,
+        joints=tuple(_joint(joint) for joint in section.joints),
+        couplings=couplings,
+        pen=Pen(PenHold(section.pen.hold), (x, y, z), section.pen.lift_mm, section.pen.clearance_mm),
+        workspace=Workspace(section.workspace.inner_radius_mm, section.workspace.min_tip_speed_mm_s),
+    )
