@@ -73,7 +73,7 @@ def written_aside(target: Path, *, binary: bool = False) -> Iterator[IO[str] | I
     aside = None
     try:
         descriptor, aside = tempfile.mkstemp(dir=folder, prefix=f".{target.name}.")
-        with os.fdopen(descriptor, "wb" if binary else "w", **({} if binary else {"encoding": "ascii"})) as file:
+        with os.fdopen(descriptor, "wb" if binary else "w", **({} if binary else {"encoding": "utf-8"})) as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
