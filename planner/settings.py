@@ -1,0 +1,46 @@
+"""What a user can ask of the planner, with the defaults; lengths in mm, times in s."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Method(StrEnum):
+    """How postures are found for the points of a stroke."""
+
+    PATH = "path"
+    NLP = "nlp"
+    DLS = "dls"
+    CLOSED_FORM = "closed-form"
+
+
+class CanvasKind(StrEnum):
+    """Which rectangle of the paper is drawn on."""
+
+    DOCUMENTED = "documented"
+    OPTIMAL = "optimal"
+    USABLE = "usable"
+
+
+@dataclass(frozen=True, slots=True)
+class PlanSettings:
+    """Settings of one plan.
+
+    speed_mm_s: cap on the pen's speed on the paper. lowering_speed_mm_s: cap on its vertical speed when
+    it comes down. dwell_s: rest on the paper after lowering. lift_mm: travel height, None for the arm's own.
+    """
+
+    arm: str = "drawing_arm"
+    method: Method = Method.PATH
+    rate_hz: float = 100.0
+    tolerance_mm: float = 0.05
+    speed_mm_s: float = 80.0
+    lowering_speed_mm_s: float = 30.0
+    dwell_s: float = 0.0
+    lift_mm: float | None = None
+    canvas: CanvasKind = CanvasKind.USABLE
+    fit: bool = True
+    margin_mm: float = 5.0
+    rotate_deg: float = 0.0
+    skip_unreachable: bool = False
