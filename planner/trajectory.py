@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import os
+import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, cast
 
 import numpy as np
 
@@ -21,7 +22,12 @@ TRAVELLING = -1
 """Value of `stroke` while the pen is travelling, lifting or lowering."""
 
 _DECIMALS = 9
+_FIRST_LINE = 9  # after seven comment lines and the column names
 _BLOCK_ROWS = 65_536
+_BLOCK_CHARACTERS = 1 << 22
+_LONGEST_LINE = 1 << 16
+_LOWEST_RATE_HZ, _HIGHEST_RATE_HZ = 1e-3, 1e5  # times are written in microseconds
+_LARGEST = 1e9
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -34,6 +40,7 @@ class Trajectory:
     stroke: (n_samples,) index of the stroke being drawn, or TRAVELLING.
     svg_to_arm_mm: (a, b, c, d, e, f) from SVG user units to arm millimetres,
         x = a u + c v + e, y = b u + d v + f.
+    first_line: the line that its first sample has in its file, for messages that name lines.
     """
 
     arm: str
@@ -45,6 +52,11 @@ class Trajectory:
     pen: BoolArray
     stroke: IntArray
     svg_to_arm_mm: tuple[float, float, float, float, float, float]
+    first_line: int = _FIRST_LINE
+
+    def line(self, sample: int) -> int:
+        """Line of a sample in its file, counted from 1."""
+        return self.first_line + sample
 
     @property
     def n_samples(self) -> int:
@@ -64,36 +76,58 @@ class Trajectory:
 @contextmanager
 def written_aside(target: Path, *, binary: bool = False) -> Iterator[IO[str] | IO[bytes]]:
     """A file that takes the place of `target` only once it is complete and on disk; nothing is left
-    behind otherwise. Errors: OutputError."""
-    folder = target.parent
-    if target.is_dir():
-        raise OutputError(str(target), "it is a folder")
-    if not folder.is_dir():
-        raise OutputError(str(target), f"there is no folder {folder}")
+    behind otherwise. A symbolic link stays one, and the file that it points to is replaced; a device or
+    a pipe is written to as it is. Errors: OutputError."""
     aside = None
     try:
-        descriptor, aside = tempfile.mkstemp(dir=folder, prefix=f".{target.name}.")
-        with os.fdopen(descriptor, "wb" if binary else "w", **({} if binary else {"encoding": "utf-8"})) as file:
+        if target.is_dir():
+            raise OutputError(str(target), "it is a folder")
+        if target.exists() and not target.is_file():
+            with _opened(os.open(target, os.O_WRONLY), binary) as file:
+                yield file
+            return
+        final = Path(os.path.realpath(target))
+        if not final.parent.is_dir():
+            raise OutputError(str(target), f"there is no folder {final.parent}")
+        if final.exists() and not os.access(final, os.W_OK):
+            raise OutputError(str(target), "it is write-protected")
+        descriptor, name = tempfile.mkstemp(dir=final.parent, prefix=".unfinished-")
+        aside = Path(name)
+        with _opened(descriptor, binary) as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(aside, 0o666 & ~mask)  # mkstemp makes files private; a result is for everybody, as usual
-        os.replace(aside, target)
+        aside.chmod(_usual_mode(final))  # mkstemp makes files private; a result is for everybody, as usual
+        aside.replace(final)
         aside = None
     except OSError as error:
         raise OutputError(str(target), error.strerror or str(error)) from error
     finally:
         if aside is not None:
             with suppress(OSError):
-                os.unlink(aside)
+                aside.unlink()
+
+
+def _opened(descriptor: int, binary: bool) -> IO[str] | IO[bytes]:
+    if binary:
+        return os.fdopen(descriptor, "wb")
+    # A file name that is no Unicode may stand in a comment line: better a "?" than no trajectory.
+    return os.fdopen(descriptor, "w", encoding="utf-8", errors="replace")
+
+
+def _usual_mode(target: Path) -> int:
+    """Permissions of the file that is replaced, or those that a new one would get."""
+    if target.exists():
+        return stat.S_IMODE(target.stat().st_mode)
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
 
 
 def write_trajectory(trajectory: Trajectory, target: Path) -> None:
     """Write the CSV, whole or not at all. Errors: OutputError."""
     with written_aside(target) as file:
-        _write(trajectory, file)  # type: ignore[arg-type]
+        _write(trajectory, cast("IO[str]", file))
 
 
 def _write(trajectory: Trajectory, file: IO[str]) -> None:
@@ -103,7 +137,7 @@ def _write(trajectory: Trajectory, file: IO[str]) -> None:
         ("arm", trajectory.arm),
         ("drawing", trajectory.drawing),
         ("method", trajectory.method),
-        ("rate_hz", f"{trajectory.rate_hz:.12g}"),
+        ("rate_hz", repr(float(trajectory.rate_hz)).removesuffix(".0")),
         ("duration_s", f"{trajectory.duration_s:.9g}"),
         ("svg_to_arm_mm", affine),
     ):
@@ -126,93 +160,132 @@ def read_trajectory(source: Path) -> Trajectory:
     """
     name = str(source)
     try:
-        lines = source.read_text(encoding="utf-8").splitlines()
+        with source.open(encoding="utf-8-sig", errors="replace") as file:
+            header, columns, first_line = _read_head(name, file)
+            table = _read_rows(name, file, first_line, len(columns) + 3)
     except OSError as error:
         raise TrajectoryFileError(name, None, f"cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise TrajectoryFileError(name, None, "is not a text file") from error
-    header, start = _read_header(name, lines)
-    version = header.get("trajectory")
+    rate_hz = header.rate_hz
+    _check_rows(name, table, rate_hz, first_line)
+    if abs(header.duration_s - table[-1, 0]) > 0.5 / rate_hz:
+        raise TrajectoryFileError(
+            name, first_line + len(table) - 1,
+            f"the last sample is at {table[-1, 0]:g} s, the header promises {header.duration_s:g} s")
+    return Trajectory(
+        arm=header.texts.get("arm", ""), drawing=header.texts.get("drawing", ""),
+        method=header.texts.get("method", ""), rate_hz=rate_hz, columns=columns,
+        positions=np.ascontiguousarray(table[:, 1:-2]), pen=table[:, -2] != 0, stroke=table[:, -1].astype(np.int64),
+        svg_to_arm_mm=header.svg_to_arm_mm, first_line=first_line)
+
+
+@dataclass(frozen=True, slots=True)
+class _Header:
+    texts: Mapping[str, str]
+    rate_hz: float
+    duration_s: float
+    svg_to_arm_mm: tuple[float, float, float, float, float, float]
+
+
+def _read_head(name: str, file: IO[str]) -> tuple[_Header, tuple[str, ...], int]:
+    """Header, joint columns, and the line of the first sample."""
+    found: dict[str, tuple[str, int]] = {}
+    number = 1
+    while (line := file.readline(_LONGEST_LINE)).startswith("#"):
+        key, separator, value = line[1:].partition(":")
+        if separator:
+            found[key.strip()] = value.strip(), number
+        number += 1
+    version, version_line = found.get("trajectory", (None, 1))
     if version is None:
         raise TrajectoryFileError(name, 1, "does not begin as a trajectory (no '# trajectory: 1' line)")
     if version != str(FORMAT_VERSION):
-        raise TrajectoryFileError(name, 1, f"is of format '{version}'; this planner reads format {FORMAT_VERSION}")
-    rate_hz = _header_numbers(name, header, "rate_hz", 1)[0]
-    if not rate_hz > 0:
-        raise TrajectoryFileError(name, None, f"rate_hz is {rate_hz:g}; it has to be positive")
-    affine = _header_numbers(name, header, "svg_to_arm_mm", 6)
-    duration_s = _header_numbers(name, header, "duration_s", 1)[0]
-    columns = _read_columns(name, lines, start)
-    table = _read_rows(name, lines, start + 1, len(columns) + 3)
-    _check_rows(name, table, rate_hz, start + 2)
-    if abs(duration_s - table[-1, 0]) > 0.5 / rate_hz:
         raise TrajectoryFileError(
-            name, len(lines), f"the last sample is at {table[-1, 0]:g} s, the header promises {duration_s:g} s")
-    a, b, c, d, e, f = affine
-    return Trajectory(
-        arm=header.get("arm", ""), drawing=header.get("drawing", ""), method=header.get("method", ""),
-        rate_hz=rate_hz, columns=columns, positions=np.ascontiguousarray(table[:, 1:-2]),
-        pen=table[:, -2] != 0, stroke=table[:, -1].astype(np.int64), svg_to_arm_mm=(a, b, c, d, e, f))
+            name, version_line, f"is of format '{_shown(version)}'; this planner reads format {FORMAT_VERSION}")
+    rate_hz = _numbers(name, found, "rate_hz", 1)[0]
+    if not _LOWEST_RATE_HZ <= rate_hz <= _HIGHEST_RATE_HZ:
+        raise TrajectoryFileError(
+            name, found["rate_hz"][1],
+            f"rate_hz is {rate_hz:g}; it has to be from {_LOWEST_RATE_HZ:g} to {_HIGHEST_RATE_HZ:g}")
+    duration_s = _numbers(name, found, "duration_s", 1)[0]
+    a, b, c, d, e, f = _numbers(name, found, "svg_to_arm_mm", 6)
+    if not line:
+        raise TrajectoryFileError(name, max(number - 1, 1), "ends before its column names")
+    texts = {key: value for key, (value, _) in found.items()}
+    return _Header(texts, rate_hz, duration_s, (a, b, c, d, e, f)), _joint_columns(name, line, number), number + 1
 
 
-def _read_header(name: str, lines: list[str]) -> tuple[dict[str, str], int]:
-    header: dict[str, str] = {}
-    for number, line in enumerate(lines):
-        if not line.startswith("#"):
-            return header, number
-        key, separator, value = line[1:].partition(":")
-        if separator:
-            header[key.strip()] = value.strip()
-    raise TrajectoryFileError(name, len(lines) or None, "ends before its column names")
-
-
-def _header_numbers(name: str, header: dict[str, str], key: str, count: int) -> list[float]:
-    if key not in header:
+def _numbers(name: str, found: Mapping[str, tuple[str, int]], key: str, count: int) -> list[float]:
+    if key not in found:
         raise TrajectoryFileError(name, None, f"has no '# {key}:' line")
+    text, line = found[key]
+    cells = text.split()
+    if len(cells) != count or not all(map(_is_number, cells)):
+        raise TrajectoryFileError(name, line, f"'# {key}:' is '{_shown(text)}'; wanted {count} number(s)")
+    return [float(cell) for cell in cells]
+
+
+def _is_number(text: str) -> bool:
     try:
-        values = [float(value) for value in header[key].split()]
+        return math.isfinite(float(text)) and text.isascii() and "_" not in text
     except ValueError:
-        values = []
-    if len(values) != count or not all(map(math.isfinite, values)):
-        raise TrajectoryFileError(name, None, f"'# {key}:' is '{header[key]}'; wanted {count} number(s)")
-    return values
+        return False
 
 
-def _read_columns(name: str, lines: list[str], start: int) -> tuple[str, ...]:
-    names = lines[start].strip().split(",")
+def _shown(text: str) -> str:
+    """A part of a file as it may stand in a message: short, and without characters that upset a terminal."""
+    return "".join(character if character.isprintable() else "?" for character in text[:60])
+
+
+def _joint_columns(name: str, line: str, number: int) -> tuple[str, ...]:
+    names = line.strip().split(",")
     if len(names) < 4 or names[0] != "t_s" or names[-2:] != ["pen", "stroke"]:
-        raise TrajectoryFileError(name, start + 1, "expected the columns t_s, the joints, pen, stroke")
+        raise TrajectoryFileError(name, number, "expected the columns t_s, the joints, pen, stroke")
     joints = tuple(names[1:-2])
     for column in joints:
         if not column.endswith(("_deg", "_mm")):
-            raise TrajectoryFileError(name, start + 1, f"column '{column}' has no unit (_deg or _mm)")
+            raise TrajectoryFileError(name, number, f"column '{_shown(column)}' has no unit (_deg or _mm)")
     if len(set(joints)) != len(joints):
-        raise TrajectoryFileError(name, start + 1, "two columns have the same name")
+        raise TrajectoryFileError(name, number, "two columns have the same name")
     return joints
 
 
-def _read_rows(name: str, lines: list[str], start: int, width: int) -> FloatArray:
-    rows = lines[start:]
-    if not rows:
-        raise TrajectoryFileError(name, start, "has no samples")
+def _read_rows(name: str, file: IO[str], first_line: int, width: int) -> FloatArray:
+    """(n_samples, width) all cells; read in blocks, so that memory is that of the numbers."""
+    blocks = []
+    number, rest = first_line, ""
+    while chunk := file.read(_BLOCK_CHARACTERS):
+        rows = (rest + chunk).split("\n")
+        rest = rows.pop()
+        if len(rest) > _LONGEST_LINE:
+            raise TrajectoryFileError(name, number + len(rows), "is too long for a sample")
+        if rows:
+            blocks.append(_table(name, rows, number, width))
+            number += len(rows)
+    if rest:
+        blocks.append(_table(name, [rest], number, width))
+    if not blocks:
+        raise TrajectoryFileError(name, first_line - 1, "has no samples")
+    return np.concatenate(blocks)
+
+
+def _table(name: str, rows: list[str], first_line: int, width: int) -> FloatArray:
     try:
-        table: FloatArray = np.loadtxt(rows, delimiter=",", ndmin=2, comments=None, dtype=np.float64)
+        if all(rows):  # the parser below would pass over empty lines, with a warning
+            table: FloatArray = np.loadtxt(rows, delimiter=",", ndmin=2, comments=None, dtype=np.float64)
+            if table.shape == (len(rows), width) and bool((np.abs(table) < _LARGEST).all()):
+                return table
     except ValueError:
-        table = np.empty((0, 0))
-    if table.shape == (len(rows), width) and bool(np.isfinite(table).all()):
-        return table
-    for number, row in enumerate(rows, start + 1):  # the slow way, to name the line
+        pass  # found again below, where its line is known
+    for number, row in enumerate(rows, first_line):
         cells = row.split(",")
         if len(cells) != width:
-            raise TrajectoryFileError(name, number, f"has {len(cells)} cells; wanted {width}")
+            raise TrajectoryFileError(name, number, f"has {len(cells)} cell(s); wanted {width}")
         for cell in cells:
-            try:
-                good = math.isfinite(float(cell))
-            except ValueError:
-                good = False
-            if not good:
-                raise TrajectoryFileError(name, number, f"'{cell.strip()}' is not a finite number")
-    raise TrajectoryFileError(name, None, "cannot be read as a table of numbers")
+            if not _is_number(cell):
+                raise TrajectoryFileError(name, number, f"'{_shown(cell.strip())}' is not a finite number")
+            if abs(float(cell)) >= _LARGEST:
+                raise TrajectoryFileError(name, number, f"{float(cell):g} is beyond any time, joint or stroke")
+    raise TrajectoryFileError(name, first_line, "begins a part that cannot be read as numbers")
 
 
 def _check_rows(name: str, table: FloatArray, rate_hz: float, first_line: int) -> None:
