@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from planner.arrays import FloatArray, IntArray
 
-# Ends that meet within this share of the tolerance are taken to meet exactly, and are joined first.
+# Ends that share a cell of this share of the tolerance coincide but for rounding, and are joined first.
 _EXACT_SHARE = 0.02
 _NEIGHBOURS = 8
 
@@ -58,29 +58,52 @@ def _outward(stroke: FloatArray) -> FloatArray:
 
 
 def _match(partner: IntArray, ends: IntArray, points: FloatArray, outward: FloatArray, tolerance_mm: float) -> None:
-    """Pair free ends, best pairs first, until none are left within the tolerance.
+    """Pair free ends, the straightest first: those that coincide, then those within the tolerance.
 
-    Each round looks at a fixed number of neighbours of each end: a point where thousands of strokes meet takes
-    more rounds and not a quadratic number of pairs.
+    Each round proposes a fixed number of partners to each end, so that a point where thousands of strokes meet takes
+    no quadratic number of pairs.
     """
     free = ends
-    while len(free) > 1:
-        k = min(_NEIGHBOURS + 1, len(free))
-        gaps, others = cKDTree(points[free]).query(points[free], k=k, distance_upper_bound=tolerance_mm * (1 + 1e-9))
-        rows, columns = np.nonzero(np.isfinite(gaps))
-        near, far, gap = free[rows], free[others[rows, columns]], gaps[rows, columns]
-        one, other = np.minimum(near, far), np.maximum(near, far)
-        # The two ends of one stroke never pair: a stroke shorter than the tolerance would curl up.
-        is_pair = one // 2 != other // 2
-        one, other, gap = one[is_pair], other[is_pair], gap[is_pair]
-        if len(one) == 0:
-            break
-        turn = np.round(np.sum(outward[one] * outward[other], axis=1), 9)
-        best = np.lexsort((other, one, np.round(gap, 9), turn, gap > _EXACT_SHARE * tolerance_mm))
-        for a, b in zip(one[best].tolist(), other[best].tolist(), strict=True):
-            if partner[a] < 0 and partner[b] < 0:
-                partner[a], partner[b] = b, a
-        free = free[partner[free] < 0]
+    for propose in (_coincident, _near):
+        while len(free) > 1:
+            one, other = propose(free, points, outward, tolerance_mm)
+            # The two ends of one stroke never pair: a stroke shorter than the tolerance would curl up.
+            is_pair = one // 2 != other // 2
+            one, other = np.minimum(one, other)[is_pair], np.maximum(one, other)[is_pair]
+            if len(one) == 0:
+                break
+            turn = np.round(np.sum(outward[one] * outward[other], axis=1), 9)
+            best = np.lexsort((other, one, turn))
+            for a, b in zip(one[best].tolist(), other[best].tolist(), strict=True):
+                if partner[a] < 0 and partner[b] < 0:
+                    partner[a], partner[b] = b, a
+            free = free[partner[free] < 0]
+
+
+def _coincident(free: IntArray, points: FloatArray, outward: FloatArray,
+                tolerance_mm: float) -> tuple[IntArray, IntArray]:
+    """Pairs of ends in one place, for each end those that lead most nearly straight on."""
+    cells = np.round(points[free] / (_EXACT_SHARE * tolerance_mm))
+    place = np.unique(cells, axis=0, return_inverse=True)[1].ravel()
+    angle = np.arctan2(outward[free, 1], outward[free, 0]) % (2.0 * np.pi)
+    by_angle = np.lexsort((angle, place))
+    # One sorted row of all places, each taking up 8 of it and 2 pi for its angles.
+    row = (8.0 * place + angle)[by_angle]
+    sizes = np.bincount(place)
+    first = (np.cumsum(sizes) - sizes)[place]
+    opposite = np.searchsorted(row, 8.0 * place + (angle + np.pi) % (2.0 * np.pi)) - first
+    offsets = np.arange(-_NEIGHBOURS // 2, _NEIGHBOURS // 2)[:, np.newaxis]
+    partners = by_angle[first + (opposite + offsets) % sizes[place]]
+    return np.tile(free, len(offsets)), free[partners.ravel()]
+
+
+def _near(free: IntArray, points: FloatArray, _: FloatArray, tolerance_mm: float) -> tuple[IntArray, IntArray]:
+    """Pairs of ends within the tolerance, for each end its nearest."""
+    k = min(_NEIGHBOURS + 1, len(free))
+    tree = cKDTree(points[free])
+    gaps, others = tree.query(points[free], k=k, distance_upper_bound=tolerance_mm * (1.0 + 1e-9))
+    rows, columns = np.nonzero(np.isfinite(gaps))
+    return free[rows], free[others[rows, columns]]
 
 
 def _chain(partner: IntArray, index: int) -> tuple[list[int], bool]:
