@@ -39,6 +39,17 @@ class Played:
     stopped: bool
     pen_height_mm: float
 
+    def lines(self) -> list[str]:
+        """The same in words."""
+        end = "stopped" if self.stopped else "played"
+        rests = f"the pen rests {self.pen_height_mm:.2f} mm above the paper"
+        worst = f"{self.worst_late_s * 1e3:.2f} ms at worst; {self.late} by more than a period"
+        words = [f"{end} after {self.sent} of {self.total} samples and {self.duration_s:.2f} s; {rests}",
+                 f"samples were late by {self.mean_late_s * 1e3:.2f} ms on average and {worst}"]
+        if self.stalls:
+            words.append(f"playing stalled {self.stalls} time(s) and went on later")
+        return words
+
 
 def play(set_points: FloatArray, rate_hz: float, arm: Arm, driver: Driver, clock: Clock, *,
          stop_requested: Callable[[], bool] = lambda: False,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +31,7 @@ def set_points(trajectory: Trajectory, arm: Arm, source: Path) -> FloatArray:
         sample, joint = _first(beyond)
         unit = arm.joints[joint].file_unit
         raise TrajectoryFileError(
-            str(source), _line(source, sample), f"joint {arm.joints[joint].name} at "
+            str(source), trajectory.line(sample), f"joint {arm.joints[joint].name} at "
             f"{trajectory.positions[sample, joint]:.6g} {unit} is outside its limits of "
             f"{low[joint]:g} to {high[joint]:g} {unit}")
     steps = np.abs(np.diff(trajectory.positions, axis=0))
@@ -42,7 +41,7 @@ def set_points(trajectory: Trajectory, arm: Arm, source: Path) -> FloatArray:
         sample, joint = _first(too_fast)
         unit = arm.joints[joint].file_unit
         raise TrajectoryFileError(
-            str(source), _line(source, sample + 1), f"joint {arm.joints[joint].name} comes here at "
+            str(source), trajectory.line(sample + 1), f"joint {arm.joints[joint].name} comes here at "
             f"{steps[sample, joint] * trajectory.rate_hz:.4g} {unit}/s; its limit is {fastest[joint]:g} {unit}/s")
     positions: FloatArray = np.clip(arm.from_file_units(trajectory.positions), arm.minimum, arm.maximum)
     return positions
@@ -53,9 +52,3 @@ def _first(bad: BoolArray) -> tuple[int, int]:
     sample, joint = np.unravel_index(int(np.argmax(bad)), bad.shape)
     return int(sample), int(joint)
 
-
-def _line(source: Path, sample: int) -> int:
-    """The line of a sample, counted from 1: after the comments and the column names."""
-    with source.open(encoding="utf-8") as file:
-        comments = sum(1 for _ in takewhile(lambda line: line.startswith("#"), file))
-    return comments + 2 + sample

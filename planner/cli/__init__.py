@@ -1,0 +1,70 @@
+"""The command `plan`: which command it is, and how every one of them ends.
+
+Nothing heavy is imported before a command needs it, so that `plan --help` answers at once.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+from planner.cli.terminal import print_lines, print_note
+from planner.errors import PlannerError
+
+TRACEBACK_VARIABLE = "PLAN_TRACEBACK"
+EXIT_INTERRUPTED = 130
+EXIT_NO_MEMORY = 2
+EXIT_DEFECT = 70
+"""A fault of the program itself: EX_SOFTWARE, away from the codes that say something about the input."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; the exit code. Every error ends as one line on standard error."""
+    try:
+        try:
+            return _command(list(sys.argv[1:] if argv is None else argv))
+        except SystemExit as request:  # argparse has printed the help
+            print_lines(())
+            return int(request.code or 0)
+    except PlannerError as error:
+        print_note(f"error: {error}")
+        return error.exit_code
+    except KeyboardInterrupt:
+        print_note("interrupted")
+        return EXIT_INTERRUPTED
+    except MemoryError:
+        print_note("error: not enough memory for this; try a smaller drawing, a lower --rate or a larger --tolerance")
+        return EXIT_NO_MEMORY
+    except Exception as error:
+        if os.environ.get(TRACEBACK_VARIABLE):
+            raise
+        print_note(f"error: this is a defect of the planner, not of the input: {type(error).__name__}: {error} "
+                   f"(set {TRACEBACK_VARIABLE}=1 to see where)")
+        return EXIT_DEFECT
+
+
+def _command(arguments: list[str]) -> int:
+    """A first argument that names a command is that command; anything else is planned."""
+    name, rest = (arguments[0], arguments[1:]) if arguments else ("", [])
+    match name:
+        case "run":
+            from planner.cli.run import run
+
+            return run(rest)
+        case "plot":
+            from planner.cli.plot import plot
+
+            return plot(rest)
+        case "check":
+            from planner.cli.check import check
+
+            return check(rest)
+        case "arm":
+            from planner.cli.arm import arm
+
+            return arm(rest)
+        case _:
+            from planner.cli.plan import plan
+
+            return plan(arguments)

@@ -1,0 +1,87 @@
+"""`plan arm [NAME]`: the arms there are, or one of them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from planner.cli.parser import Parser
+from planner.cli.terminal import print_lines
+from planner.errors import UsageError
+
+_DESCRIPTION = """\
+List the arms that come with the planner, or describe one: its Denavit-Hartenberg table, limits, couplings and pen."""
+
+_EPILOG = """\
+examples:
+  plan arm
+  plan arm drawing_arm
+  plan arm my_arm.toml --json"""
+
+
+def arm(arguments: list[str]) -> int:
+    """List or describe arms. Errors: PlannerError."""
+    parser = Parser("plan arm", _DESCRIPTION, _EPILOG)
+    parser.add_argument("arm", nargs="?", metavar="NAME|FILE")
+    parser.add_argument("--json", action="store_true", help="print the description as JSON")
+    options = parser.parse_args(arguments)
+
+    from planner.arms.arm_file import known_arms, load_arm
+    from planner.arms.description import arm_description
+
+    if options.arm is None:
+        if options.json:
+            raise UsageError("--json describes one arm: name it (see plan arm)")
+        known = [load_arm(name) for name in known_arms()]
+        print_lines(_columns([(one.name, f"{one.n_joints} joints", one.source) for one in known]))
+        return 0
+    described = load_arm(options.arm)
+    description = arm_description(described)
+    if options.json:
+        print_lines([json.dumps(description, indent=2)])
+    else:
+        print_lines([f"{described.name}: {described.source}", "", *_table(description)])
+    return 0
+
+
+def _table(arm: dict[str, Any]) -> list[str]:
+    rows = [("joint", "kind", "theta", "d", "a", "alpha", "min", "max", "velocity", "acceleration", "jerk", "unit")]
+    for joint, dh in zip(arm["joints"], arm["dh"], strict=True):
+        numbers = (dh["theta_deg"], dh["d_mm"], dh["a_mm"], dh["alpha_deg"], joint["min"], joint["max"],
+                   joint["max_velocity"], joint["max_acceleration"], joint["max_jerk"])
+        rows.append((joint["name"], joint["kind"], *map(_number, numbers), joint["unit"]))
+    lines = _columns(rows)
+    lines.append("(theta and alpha in deg, d and a in mm; limits in the joint's unit, per s, s2 and s3)")
+    for coupling in arm["coupling"]:
+        terms = "".join(f" {'+' if value >= 0 else '-'} {'' if abs(value) == 1 else f'{abs(value):g} '}{name}"
+                        for name, value in coupling["coefficients"].items())
+        lines.append(f"coupling: {coupling['joint']} = {_number(coupling['constant_deg'])} deg{terms}")
+    pen = arm["pen"]
+    lines.append(f"pen: travels {_number(pen['lift_mm'])} mm above the paper, moves only straight up or down "
+                 f"below {_number(pen['clearance_mm'])} mm")
+    if "reach_mm" in arm:
+        lines.append(f"reach: {_number(arm['reach_mm']['min'])} to {_number(arm['reach_mm']['max'])} mm from the base")
+    if "canvas" in arm:
+        canvas = arm["canvas"]
+        corners = ", ".join(f"({_number(x)}, {_number(y)})" for x, y in canvas["corners_arm_mm"])
+        lines.append(f"canvas: {_number(canvas['width_mm'])} x {_number(canvas['height_mm'])} mm, "
+                     f"corners at {corners} mm")
+    return lines
+
+
+def _number(value: float) -> str:
+    return f"{round(value, 2) + 0.0:.10g}"
+
+
+def _columns(rows: Iterable[Sequence[str]]) -> list[str]:
+    """Rows of text as lines with aligned columns, numbers to the right."""
+    table = list(rows)
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    numeric = [all(_is_number(row[k]) for row in table[1:]) and len(table) > 1 for k in range(len(widths))]
+    return ["  ".join(cell.rjust(width) if right else cell.ljust(width)
+                      for cell, width, right in zip(row, widths, numeric, strict=True)).rstrip() for row in table]
+
+
+def _is_number(text: str) -> bool:
+    return text.lstrip("-").replace(".", "", 1).replace("e+", "", 1).isdigit()

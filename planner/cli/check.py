@@ -1,0 +1,58 @@
+"""`plan check traj.csv`: an independent verdict."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import IO, cast
+
+from planner.cli.output import check_target
+from planner.cli.parser import Parser
+from planner.cli.quantities import MIN_TOLERANCE_MM, length_mm
+from planner.cli.terminal import print_lines
+from planner.settings import PlanSettings
+
+_DESCRIPTION = """\
+Examine a trajectory with mathematics of the check's own: limits at and between samples, couplings, the pen's height
+and, with --drawing, whether the pen draws that drawing, all of it and nothing else."""
+
+_EPILOG = """\
+examples:
+  plan check traj.csv
+  plan check traj.csv --drawing flower.svg --tolerance 0.1mm
+  plan check traj.csv --arm my_arm.toml --json verdict.json
+
+exit codes: 0 everything holds; 1 something does not; 2 the files cannot be used"""
+
+EXIT_FAULT = 1
+
+
+def check(arguments: list[str]) -> int:
+    """Judge one trajectory. Errors: PlannerError."""
+    parser = Parser("plan check", _DESCRIPTION, _EPILOG)
+    parser.add_argument("trajectory", type=Path, metavar="traj.csv")
+    parser.add_argument("--drawing", type=Path, metavar="DRAWING.svg", help="compare what is drawn with this")
+    parser.add_argument("--arm", metavar="NAME|FILE", help="judge it for this arm (default: the one in the trajectory)")
+    parser.add_argument("--tolerance", type=length_mm(minimum_mm=MIN_TOLERANCE_MM), metavar="LENGTH",
+                        default=PlanSettings().tolerance_mm,
+                        help="how far the pen may be off the drawing (default: %(default)g mm)")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the verdict there as well")
+    options = parser.parse_args(arguments)
+    sources = [options.trajectory] + ([options.drawing] if options.drawing else [])
+    if options.json:
+        check_target(options.json, *sources)
+
+    from planner.arms.arm_file import load_arm
+    from planner.checking import check_trajectory
+    from planner.drawing.svg import read_drawing
+    from planner.trajectory import read_trajectory, written_aside
+
+    trajectory = read_trajectory(options.trajectory)
+    arm = load_arm(options.arm or trajectory.arm)
+    drawing = read_drawing(options.drawing) if options.drawing else None
+    verdict = check_trajectory(trajectory, arm, drawing, options.tolerance)
+    if options.json:
+        with written_aside(options.json) as file:
+            cast("IO[str]", file).write(json.dumps(verdict.as_dict(), indent=2) + "\n")
+    print_lines([verdict.text()])
+    return 0 if verdict.passed else EXIT_FAULT

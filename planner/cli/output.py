@@ -1,0 +1,25 @@
+"""Whether a result can be written where it is wanted, asked before the work starts."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from planner.errors import OutputError
+
+
+def check_target(target: Path, *sources: Path) -> None:
+    """Errors: OutputError where `target` cannot become a file, or would replace one of the `sources`."""
+    final = Path(os.path.realpath(target))  # a symbolic link stays, and what it points to is replaced
+    if final.is_dir():
+        raise OutputError(str(target), "it is a folder")
+    if not final.parent.is_dir():
+        raise OutputError(str(target), f"there is no folder {final.parent}")
+    if final.exists() and not os.access(final, os.W_OK):
+        raise OutputError(str(target), "it is write-protected")
+    device = final.exists() and not final.is_file()
+    if not device and not os.access(final.parent, os.W_OK | os.X_OK):
+        raise OutputError(str(target), f"the folder {final.parent} is not writable")
+    for source in sources:
+        if final.exists() and source.exists() and final.samefile(source):
+            raise OutputError(str(target), "it is what is being read")

@@ -1,0 +1,110 @@
+"""`plan DRAWING.svg -o traj.csv`: the bare command."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from planner.cli.output import check_target
+from planner.cli.parser import Parser
+from planner.cli.quantities import (
+    MAX_RATE_HZ,
+    MIN_RATE_HZ,
+    MIN_TOLERANCE_MM,
+    angle_deg,
+    length_mm,
+    number,
+    speed_mm_s,
+)
+from planner.cli.terminal import print_lines, print_warnings, progress
+from planner.settings import CanvasKind, Method, PlanSettings
+
+_DESCRIPTION = """\
+Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a trajectory of joint positions.
+
+other commands (each has its own --help; a drawing of that name is planned as ./NAME):
+  plan run traj.csv         play a trajectory on the simulated arm
+  plan check traj.csv       an independent verdict on a trajectory
+  plan plot traj.csv -o F   pictures of a trajectory
+  plan arm [NAME]           list the arms, or describe one"""
+
+_EPILOG = """\
+examples:
+  plan flower.svg                                  writes flower.csv into the current folder
+  plan flower.svg -o traj.csv --arm my_arm.toml    for an arm of your own
+  plan flower.svg --speed 4cm/s --margin 0.5in --rotate 90
+  plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
+
+Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
+
+exit codes: 0 done; 1 a check found fault; 2 unusable input or usage; 3 cannot be planned;
+4 hardware fault; 70 a defect of the planner; 130 interrupted"""
+
+
+def plan(arguments: list[str]) -> int:
+    """Plan one drawing. Errors: PlannerError."""
+    options = _parser().parse_args(arguments)
+    drawing: Path = options.drawing
+    target: Path = options.output or Path(drawing.with_suffix(".csv").name)
+    check_target(target, drawing)
+    settings = _settings(options)
+
+    from planner.pipeline import plan as plan_drawing
+    from planner.trajectory import write_trajectory
+
+    with progress(quiet=options.quiet) as show:
+        planned = plan_drawing(drawing, settings, show)
+        write_trajectory(planned.trajectory, target)
+    print_warnings(planned.summary.warnings)
+    if not options.quiet:
+        print_lines([*planned.summary.lines(), f"wrote {target}"])
+    return 0
+
+
+def _settings(options: argparse.Namespace) -> PlanSettings:
+    return PlanSettings(
+        arm=options.arm, method=Method(options.method), rate_hz=options.rate, tolerance_mm=options.tolerance,
+        speed_mm_s=options.speed, lowering_speed_mm_s=options.lowering_speed, dwell_s=options.dwell,
+        lift_mm=options.lift, canvas=CanvasKind(options.canvas), fit=options.fit, margin_mm=options.margin,
+        rotate_deg=options.rotate, skip_unreachable=options.skip_unreachable)
+
+
+def _parser() -> Parser:
+    parser = Parser("plan", _DESCRIPTION, _EPILOG)
+    parser.usage = "plan DRAWING.svg [-o traj.csv] [options]\n       plan run|check|plot|arm ..."
+    default = PlanSettings()
+    parser.add_argument("drawing", type=Path, metavar="DRAWING.svg")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE",
+                        help="the trajectory (default: the drawing's name with .csv, in the current folder)")
+    parser.add_argument("--arm", default=default.arm, metavar="NAME|FILE",
+                        help="an arm by name, or its .toml file (default: %(default)s)")
+    parser.add_argument("--quiet", action="store_true", help="no progress and no summary, only warnings and errors")
+
+    motion = parser.add_argument_group("motion")
+    motion.add_argument("--method", choices=[method.value for method in Method], default=default.method.value,
+                        help="how postures are found (default: %(default)s)")
+    motion.add_argument("--rate", type=number(minimum=MIN_RATE_HZ, maximum=MAX_RATE_HZ), default=default.rate_hz,
+                        metavar="HZ", help="samples a second (default: %(default)g)")
+    motion.add_argument("--tolerance", type=length_mm(minimum_mm=MIN_TOLERANCE_MM), default=default.tolerance_mm,
+                        metavar="LENGTH", help="how far the pen may be off the drawing (default: %(default)g mm)")
+    motion.add_argument("--speed", type=speed_mm_s, default=default.speed_mm_s, metavar="SPEED",
+                        help="fastest motion of the pen on the paper (default: %(default)g mm/s)")
+    motion.add_argument("--lift", type=length_mm(), default=default.lift_mm, metavar="LENGTH",
+                        help="height of the pen while travelling (default: the arm's own)")
+    motion.add_argument("--lowering-speed", type=speed_mm_s, default=default.lowering_speed_mm_s, metavar="SPEED",
+                        help="fastest lowering of the pen (default: %(default)g mm/s)")
+    motion.add_argument("--dwell", type=number(zero=True), default=default.dwell_s, metavar="SECONDS",
+                        help="rest on the paper after lowering (default: %(default)g s)")
+
+    placement = parser.add_argument_group("placement")
+    placement.add_argument("--canvas", choices=[kind.value for kind in CanvasKind], default=default.canvas.value,
+                           help="the rectangle of the paper to draw on (default: %(default)s)")
+    placement.add_argument("--fit", action=argparse.BooleanOptionalAction, default=default.fit,
+                           help="scale the drawing to the canvas, or keep its true size (default: --fit)")
+    placement.add_argument("--margin", type=length_mm(zero=True), default=default.margin_mm, metavar="LENGTH",
+                           help="kept free along the edges of the canvas (default: %(default)g mm)")
+    placement.add_argument("--rotate", type=angle_deg, default=default.rotate_deg, metavar="DEGREES",
+                           help="turn the drawing before placing it (default: %(default)g)")
+    placement.add_argument("--skip-unreachable", action="store_true",
+                           help="leave out what the arm cannot reach, and say so, instead of failing")
+    return parser

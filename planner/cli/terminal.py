@@ -1,0 +1,84 @@
+"""What the user sees: results on standard output, progress and warnings on standard error."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from planner.errors import OutputError
+
+if TYPE_CHECKING:
+    from rich.progress import TaskID
+
+Show = Callable[[str, int, int], None]
+"""show(label, done, total): how far something has come."""
+
+
+def print_lines(lines: Iterable[str]) -> None:
+    """Results. A reader that has gone away (`| head`) is no error; a full disk is. Errors: OutputError."""
+    if sys.stdout is None:  # started with standard output closed
+        return
+    if isinstance(sys.stdout, io.TextIOWrapper):  # a file name may hold what the terminal's encoding does not
+        sys.stdout.reconfigure(errors="backslashreplace")
+    try:
+        for line in lines:
+            print(line)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _silence(sys.stdout)
+    except OSError as error:
+        _silence(sys.stdout)
+        raise OutputError("to standard output", error.strerror or str(error)) from error
+
+
+def print_warnings(warnings: Iterable[str]) -> None:
+    for warning in warnings:
+        print_note(f"warning: {warning}")
+
+
+def print_note(message: str) -> None:
+    """One line on standard error, in the program's name."""
+    if sys.stderr is None:
+        return
+    try:
+        print("plan: " + " ".join(message.splitlines()), file=sys.stderr, flush=True)
+    except OSError:  # nobody is left to tell
+        _silence(sys.stderr)
+
+
+@contextmanager
+def progress(*, quiet: bool, single: bool = False) -> Iterator[Show]:
+    """Bars with the time left while standard error is a terminal, else nothing.
+
+    A bar for each label, or with `single` one bar whose label changes.
+    """
+    if quiet or sys.stderr is None or not sys.stderr.isatty():
+        yield lambda label, done, total: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TaskProgressColumn(),
+               TimeRemainingColumn(), TextColumn("left"))
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def show(label: str, done: int, total: int) -> None:
+            key = "" if single else label
+            if key not in tasks:
+                tasks[key] = bars.add_task(label, total=total)
+            bars.update(tasks[key], description=label, completed=done, total=total)
+
+        yield show
+
+
+def _silence(stream: io.TextIOBase | object) -> None:
+    """Send what is left in the stream's buffer nowhere, so that the interpreter's own flush at exit cannot fail."""
+    if isinstance(stream, io.TextIOWrapper):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
