@@ -1,0 +1,55 @@
+"""An arm as plain values for JSON, in the units of its file."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from planner.arms.arm import Arm
+
+
+def arm_description(arm: Arm) -> dict[str, Any]:
+    """Name, joints with their limits, DH rows, couplings and pen, in degrees, millimetres and seconds.
+
+    A coupling reads joint = constant_deg + sum of coefficients[other] * other. Figures are rounded to nine
+    decimals, so that a degree that went through radians comes back as it was.
+    """
+    names = [joint.name for joint in arm.joints]
+    return {
+        "name": arm.name,
+        "joints": [
+            {
+                "name": joint.name,
+                "kind": joint.kind.value,
+                "unit": joint.file_unit,
+                "min": _clean(joint.minimum / joint.per_file_unit),
+                "max": _clean(joint.maximum / joint.per_file_unit),
+                "max_velocity": _clean(joint.max_velocity / joint.per_file_unit),
+                "max_acceleration": _clean(joint.max_acceleration / joint.per_file_unit),
+                "max_jerk": _clean(joint.max_jerk / joint.per_file_unit),
+            }
+            for joint in arm.joints
+        ],
+        "dh": [
+            {
+                "theta_deg": _clean(math.degrees(joint.theta_rad)),
+                "d_mm": _clean(joint.d_mm),
+                "a_mm": _clean(joint.a_mm),
+                "alpha_deg": _clean(math.degrees(joint.alpha_rad)),
+            }
+            for joint in arm.joints
+        ],
+        "coupling": [
+            {
+                "joint": names[coupling.joint],
+                "constant_deg": _clean(math.degrees(coupling.constant_rad)),
+                "coefficients": {names[other]: _clean(value) for other, value in coupling.coefficients},
+            }
+            for coupling in arm.couplings
+        ],
+        "pen": {"lift_mm": arm.pen.lift_mm, "clearance_mm": arm.pen.clearance_mm},
+    }
+
+
+def _clean(value: float) -> float:
+    return round(value, 9) + 0.0  # no "-0.0"

@@ -1,0 +1,97 @@
+"""What the joints do between samples: straight lines, as most controllers have it, and smooth curves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from planner.arms.arm import Arm
+from planner.arrays import BoolArray, FloatArray, IntArray
+from planner.checking.chain import chain_poses
+from planner.trajectory import Trajectory
+
+POINTS_PER_STEP = 10
+_STEPS_AT_ONCE = 4096
+
+
+class Interpolation(StrEnum):
+    """How the joints get from one sample to the next."""
+
+    LINEAR = "linear"
+    """Each joint at constant speed: what a controller does that only knows set points."""
+    CUBIC = "cubic"
+    """The cubic through the four samples around: within J h^3 / 9 of any motion with jerk below J that
+    passes through the samples (h is the time between them)."""
+
+
+def cubic_error(max_jerk: FloatArray, step_s: float) -> FloatArray:
+    """How far the cubic can be from a motion that keeps its jerk limit, same units as the positions.
+
+    The error of the interpolation is f[x0, x1, x2, x3, x] (x - x0)(x - x1)(x - x2)(x - x3). A third divided
+    difference is J / 6 at most, hence the fourth (J / 6 + J / 6) / 3 h, and the product h^4 at most.
+    """
+    error: FloatArray = max_jerk * step_s**3 / 9
+    return error
+
+
+def positions_between(positions: FloatArray, interpolation: Interpolation) -> Iterator[FloatArray]:
+    """Blocks (n_points, n_joints) that together are all positions at POINTS_PER_STEP points a step:
+    point k belongs to sample k // POINTS_PER_STEP and the last is the last sample."""
+    n = len(positions)
+    fraction = np.arange(POINTS_PER_STEP) / POINTS_PER_STEP
+    degree = min(3, n - 1) if interpolation is Interpolation.CUBIC else min(1, n - 1)
+    # Weights of the samples around for each place that a step can have among them.
+    weights = np.stack([_lagrange(place + fraction, degree) for place in range(max(degree, 1))])
+    for start in range(0, n - 1, _STEPS_AT_ONCE):
+        step = np.arange(start, min(start + _STEPS_AT_ONCE, n - 1))
+        first = np.clip(step - degree // 2, 0, n - 1 - degree)
+        around = positions[first[:, np.newaxis] + np.arange(degree + 1)]
+        yield (weights[step - first] @ around).reshape(-1, positions.shape[1])
+    yield positions[n - 1:]
+
+
+def _lagrange(at: FloatArray, degree: int) -> FloatArray:
+    """(len(at), degree + 1) weights of nodes 0 .. degree in the polynomial through them."""
+    nodes = np.arange(degree + 1)
+    columns = [np.prod([(at - other) / (node - other) for other in nodes if other != node], axis=0) for node in nodes]
+    weights: FloatArray = np.stack(np.broadcast_arrays(*columns, at)[:-1], axis=1)
+    return weights
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Sweep:
+    """The arm at and between the samples under one interpolation, p points.
+
+    sample: (p,) the sample at or before the point. tip_mm: (p, 3). lowest_mm: (p,) lowest node of the
+    links. tilt_rad: (p,) angle of the tool axis to straight down. down: (p,) the pen is on the paper, which
+    between samples means on it at both.
+    """
+
+    interpolation: Interpolation
+    sample: IntArray
+    tip_mm: FloatArray
+    lowest_mm: FloatArray
+    tilt_rad: FloatArray
+    down: BoolArray
+
+
+def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation) -> Sweep:
+    """The arm's poses at and between all samples."""
+    positions = arm.from_file_units(trajectory.positions)
+    n_points = (trajectory.n_samples - 1) * POINTS_PER_STEP + 1
+    tip, lowest, tilt = np.empty((n_points, 3)), np.empty(n_points), np.empty(n_points)
+    start = 0
+    for block in positions_between(positions, interpolation):
+        poses = chain_poses(arm, block)
+        part = slice(start, start + len(block))
+        tip[part] = poses.tip_mm.T
+        lowest[part] = poses.lowest_mm
+        tilt[part] = np.arctan2(np.hypot(poses.tool[0], poses.tool[1]), -poses.tool[2])
+        start += len(block)
+    point = np.arange(n_points)
+    sample, between = point // POINTS_PER_STEP, point % POINTS_PER_STEP > 0
+    down = trajectory.pen[sample] & (~between | trajectory.pen[np.minimum(sample + 1, trajectory.n_samples - 1)])
+    return Sweep(interpolation, sample, tip, lowest, tilt, down)

@@ -1,0 +1,52 @@
+"""Forward kinematics in plain NumPy, straight from the Denavit-Hartenberg rows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.arms.arm import Arm, JointKind
+from planner.arrays import FloatArray
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ChainPoses:
+    """Where the chain is in n postures.
+
+    tip_mm: (3, n) the origin of the last frame. lowest_mm: (n,) the height of the lowest node of the
+    links, the tip aside: links are straight between nodes, so no part of one is lower.
+    tool: (3, n) direction of `pen.tool_axis` in the base frame.
+    """
+
+    tip_mm: FloatArray
+    lowest_mm: FloatArray
+    tool: FloatArray
+
+
+def chain_poses(arm: Arm, positions: FloatArray) -> ChainPoses:
+    """Poses of positions (n, n_joints) in rad and mm.
+
+    Each row is Rz(theta) Tz(d) Tx(a) Rx(alpha), so the nodes of a link are the points reached after Tz(d)
+    and after Tx(a); a displacement that is always zero makes no node.
+    """
+    n = len(positions)
+    x, y, z = (np.repeat(axis[:, np.newaxis], n, axis=1) for axis in np.eye(3))
+    node = np.zeros((3, n))
+    heights = [node[2]]
+    for joint, position in zip(arm.joints, positions.T, strict=True):
+        slides = joint.kind is JointKind.PRISMATIC
+        theta = joint.theta_rad + (0.0 if slides else position)
+        cosine, sine = np.cos(theta), np.sin(theta)
+        x, y = cosine * x + sine * y, cosine * y - sine * x
+        if slides or joint.d_mm:
+            node = node + (joint.d_mm + (position if slides else 0.0)) * z
+            heights.append(node[2])
+        if joint.a_mm:
+            node = node + joint.a_mm * x
+            heights.append(node[2])
+        cosine, sine = np.cos(joint.alpha_rad), np.sin(joint.alpha_rad)
+        y, z = cosine * y + sine * z, cosine * z - sine * y
+    along_x, along_y, along_z = arm.pen.tool_axis
+    links = heights[:-1] or heights
+    return ChainPoses(node, np.min(links, axis=0), along_x * x + along_y * y + along_z * z)

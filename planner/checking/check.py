@@ -1,0 +1,50 @@
+"""The independent verdict on a trajectory: nothing of the planner's own mathematics takes part in it."""
+
+from __future__ import annotations
+
+from planner.arms.arm import Arm
+from planner.checking.between import Interpolation, sweep
+from planner.checking.coverage import drawing_findings
+from planner.checking.joints import couplings, position_limits, rate_limits, rest_at_the_ends
+from planner.checking.pen import (
+    above_the_paper,
+    lift_notes,
+    on_the_paper,
+    straight_up_and_down,
+    stroke_order,
+    upright,
+)
+from planner.checking.verdict import Finding, Verdict
+from planner.drawing.drawing import Drawing
+from planner.trajectory import Trajectory
+
+
+def check_trajectory(
+        trajectory: Trajectory, arm: Arm, drawing: Drawing | None = None, tolerance_mm: float = 0.05) -> Verdict:
+    """Hold a trajectory against everything that one promises, at the samples and between them.
+
+    Between samples the joints are taken both as straight lines and as cubics; the worse of the two counts.
+    tolerance_mm: for the pen path against the drawing, the tip's height on the paper, depth below it, and
+    sideways drift while it is lifted or lowered. Without a drawing, the pen path is not compared.
+    """
+    if trajectory.columns != arm.column_names:
+        return Verdict((Finding(
+            "columns", False, remark=f"are {', '.join(trajectory.columns)}; "
+            f"arm {arm.name} has {', '.join(arm.column_names)}: nothing else can be checked"),))
+    sweeps = [sweep(trajectory, arm, interpolation) for interpolation in Interpolation]
+    findings = [
+        Finding("columns", True, remark=f"are the joints of {arm.name}"),
+        *rest_at_the_ends(trajectory, arm),
+        *position_limits(trajectory, arm),
+        *rate_limits(trajectory, arm),
+        *couplings(trajectory, arm),
+        *stroke_order(trajectory),
+        *on_the_paper(trajectory, sweeps, tolerance_mm),
+        *upright(trajectory, arm, sweeps),
+        *above_the_paper(trajectory, sweeps, tolerance_mm),
+        *straight_up_and_down(trajectory, sweeps, arm.pen.clearance_mm, tolerance_mm),
+        *lift_notes(trajectory, arm, sweeps[0], tolerance_mm),
+    ]
+    if drawing is not None:
+        findings += drawing_findings(trajectory, drawing, sweeps, tolerance_mm)
+    return Verdict(tuple(findings))

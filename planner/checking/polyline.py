@@ -1,0 +1,82 @@
+"""Lines as points close to each other, and the distance of points to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from planner.arrays import BoolArray, FloatArray, IntArray
+
+_POINTS_AT_ONCE = 100_000
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class DenseLines:
+    """Polylines cut fine.
+
+    points_mm: (n, 2) all points, line after line. joined: (n,) the line goes on to the next point.
+    source: (n,) index of the original point at or before each.
+    """
+
+    points_mm: FloatArray
+    joined: BoolArray
+    source: IntArray
+
+    def length_at_points_mm(self) -> FloatArray:
+        """(n,) the share of the total length around each point."""
+        step = np.zeros(len(self.points_mm))
+        step[:-1] = np.linalg.norm(np.diff(self.points_mm, axis=0), axis=1) * self.joined[:-1]
+        share: FloatArray = (step + np.concatenate(([0.0], step[:-1]))) / 2
+        return share
+
+    def distance_mm(self, points_mm: FloatArray) -> FloatArray:
+        """(k,) distance of points (k, 2) to the lines; needs at least one point to measure to.
+
+        Taken to the two pieces beside the nearest point. Another piece can be nearer by s^2 / 8 d at most,
+        s being the spacing of the points and d the distance, so figures err on the large side only.
+        """
+        tree = cKDTree(self.points_mm)
+        distance = np.empty(len(points_mm))
+        for start in range(0, len(points_mm), _POINTS_AT_ONCE):
+            block = points_mm[start:start + _POINTS_AT_ONCE]
+            _, nearest = tree.query(block)
+            before = np.maximum(nearest - 1, 0)
+            before = np.where(self.joined[before], before, nearest)
+            after = np.where(self.joined[nearest], nearest + 1, nearest)
+            distance[start:start + _POINTS_AT_ONCE] = np.minimum(
+                _to_segments(block, self.points_mm[before], self.points_mm[nearest]),
+                _to_segments(block, self.points_mm[nearest], self.points_mm[after]))
+        return distance
+
+
+def dense_lines(points_mm: FloatArray, joined: BoolArray, spacing_mm: float) -> DenseLines:
+    """Cut polylines into pieces of `spacing_mm` at most.
+
+    points_mm: (n, 2). joined: (n,) a point goes on to the next one, False for the last. Points that
+    follow within a twentieth of the spacing are left out, the ends of lines aside.
+    """
+    length = np.zeros(len(points_mm))
+    length[:-1] = np.linalg.norm(np.diff(points_mm, axis=0), axis=1) * joined[:-1]
+    cell = np.floor(np.cumsum(np.concatenate(([0.0], length[:-1]))) / (spacing_mm / 20))
+    is_first = np.concatenate(([True], ~joined[:-1]))
+    kept = np.flatnonzero(is_first | ~joined | (np.diff(cell, prepend=-1.0) > 0))
+    points_mm, joined = points_mm[kept], joined[kept]
+    gap = np.zeros_like(points_mm)
+    gap[:-1] = np.diff(points_mm, axis=0) * joined[:-1, np.newaxis]
+    count = np.maximum(np.ceil(np.linalg.norm(gap, axis=1) / spacing_mm).astype(np.int64), 1)
+    origin = np.repeat(np.arange(len(points_mm)), count)
+    first = np.cumsum(count) - count
+    fraction = (np.arange(len(origin)) - first[origin]) / count[origin]
+    return DenseLines(points_mm[origin] + fraction[:, np.newaxis] * gap[origin], joined[origin], kept[origin])
+
+
+def _to_segments(points: FloatArray, begins: FloatArray, ends: FloatArray) -> FloatArray:
+    """(k,) distance of each point to its own segment; all (k, 2)."""
+    along = ends - begins
+    square = np.einsum("ij,ij->i", along, along)
+    share = np.einsum("ij,ij->i", points - begins, along) / np.where(square > 0, square, 1.0)
+    foot = begins + np.clip(share, 0.0, 1.0)[:, np.newaxis] * along
+    distance: FloatArray = np.linalg.norm(points - foot, axis=1)
+    return distance
