@@ -1,0 +1,182 @@
+"""Symbolic kinematics of any arm, built by CasADi from its DH table and couplings.
+
+Everything is a function of the free joints: driven joints are substituted, so a posture cannot leave
+its coupling. Compiled functions are evaluated over whole arrays of postures at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property, lru_cache
+
+import casadi
+import numpy as np
+
+from planner.arms.arm import Arm, JointKind, PenHold
+from planner.arrays import FloatArray
+
+_BLOCK = 256
+
+
+class MappedFunction:
+    """A CasADi function evaluated over the rows of arrays.
+
+    Inputs are (n, k_i) arrays, outputs (n, *shape_i) arrays. The function is mapped over blocks of a
+    fixed size through CasADi's raw buffers, so nothing is copied or looked up per point.
+    """
+
+    def __init__(self, name: str, inputs: Sequence[casadi.SX], outputs: Sequence[casadi.SX]) -> None:
+        dense = [casadi.densify(casadi.vec(output.T)) for output in outputs]  # row-major, as NumPy reads it
+        self._shapes = [tuple(output.shape) if output.shape[1] > 1 else (output.shape[0],) for output in outputs]
+        self.function = casadi.Function(name, [casadi.vec(value) for value in inputs], dense)
+        mapped = self.function.map(_BLOCK)
+        self._buffer, self._evaluate = mapped.buffer()
+        self._arguments = [np.zeros((_BLOCK, value.numel())) for value in inputs]
+        self._results = [np.zeros((_BLOCK, value.numel())) for value in dense]
+        for index, array in enumerate(self._arguments):
+            self._buffer.set_arg(index, memoryview(array))
+        for index, array in enumerate(self._results):
+            self._buffer.set_res(index, memoryview(array))
+
+    def __call__(self, *inputs: FloatArray) -> list[FloatArray]:
+        n_points = len(inputs[0])
+        outputs = [np.empty((n_points, array.shape[1])) for array in self._results]
+        for start in range(0, n_points, _BLOCK):
+            count = min(_BLOCK, n_points - start)
+            for argument, values in zip(self._arguments, inputs, strict=True):
+                argument[:count] = values[start:start + count]
+            self._evaluate()
+            for output, result in zip(outputs, self._results, strict=True):
+                output[start:start + count] = result[:count]
+        return [output.reshape(n_points, *shape) for output, shape in zip(outputs, self._shapes, strict=True)]
+
+
+class Kinematics:
+    """Forward kinematics, Jacobians and the task of one arm, as functions of its free joints.
+
+    The task is what a posture has to meet at a pen target: the tip's place (3 rows, mm) and, where the
+    tool axis has to point down, the two horizontal components of that axis (which have to be zero).
+    """
+
+    def __init__(self, arm: Arm) -> None:
+        self.arm = arm
+        matrix, constant = arm.coupling_matrix
+        self.free = casadi.SX.sym("q", len(arm.free_joints))
+        self.joints = casadi.sparsify(casadi.SX(matrix)) @ self.free + constant
+        self.frames, corners = _chain(arm, self.joints)
+        last = self.frames[-1]
+        self.tip = last[:3, 3]
+        self.axis = last[:3, :3] @ casadi.DM(arm.pen.tool_axis)
+        self.task = casadi.vertcat(self.tip, self.axis[:2]) if arm.pen.hold is PenHold.TOOL_AXIS else self.tip
+        self.nodes = casadi.horzcat(*corners).T
+
+    @property
+    def n_free(self) -> int:
+        return len(self.arm.free_joints)
+
+    @property
+    def n_task(self) -> int:
+        return int(self.task.shape[0])
+
+    @property
+    def n_redundant(self) -> int:
+        """Degrees of freedom left at a pen target."""
+        return self.n_free - self.n_task
+
+    @cached_property
+    def _pose(self) -> MappedFunction:
+        return MappedFunction("pose", [self.free], [self.frames[-1]])
+
+    @cached_property
+    def _tip(self) -> MappedFunction:
+        return MappedFunction("tip", [self.free], [self.tip])
+
+    @cached_property
+    def _nodes(self) -> MappedFunction:
+        return MappedFunction("nodes", [self.free], [self.nodes])
+
+    @cached_property
+    def _task(self) -> MappedFunction:
+        return MappedFunction("task", [self.free], [self.task, casadi.jacobian(self.task, self.free)])
+
+    @cached_property
+    def _jacobian(self) -> MappedFunction:
+        """The geometric 6 x n Jacobian of all joints, each taken as independent."""
+        joints = casadi.SX.sym("q", self.arm.n_joints)
+        frames, _ = _chain(self.arm, joints)
+        linear = casadi.jacobian(frames[-1][:3, 3], joints)
+        axes = [casadi.SX([0, 0, 1]), *[frame[:3, 2] for frame in frames[:-1]]]
+        angular = casadi.horzcat(*[
+            axis if joint.kind is JointKind.REVOLUTE else casadi.SX.zeros(3)
+            for axis, joint in zip(axes, self.arm.joints, strict=True)])
+        return MappedFunction("jacobian", [joints], [casadi.vertcat(linear, angular)])
+
+    def pose(self, free: FloatArray) -> FloatArray:
+        """T_base_pen (n, 4, 4), mm, of postures (n, n_free)."""
+        return self._pose(free)[0]
+
+    def tip_mm(self, free: FloatArray) -> FloatArray:
+        """Pen tip (n, 3), mm, of postures (n, n_free)."""
+        return self._tip(free)[0]
+
+    def nodes_mm(self, free: FloatArray) -> FloatArray:
+        """Corners of the link chain (n, n_nodes, 3), mm, from the first joint to the tip."""
+        return self._nodes(free)[0]
+
+    def task_and_jacobian(self, free: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Task (n, n_task) and its derivative by the free joints (n, n_task, n_free)."""
+        task, jacobian = self._task(free)
+        return task, jacobian
+
+    def jacobian(self, joints: FloatArray) -> FloatArray:
+        """Geometric Jacobian in the base frame, (n, 6, n_joints): linear rows in mm, then angular rows,
+        of all joints (n, n_joints) as if no coupling held."""
+        return self._jacobian(joints)[0]
+
+    def task_target(self, tip_mm: FloatArray) -> FloatArray:
+        """(n, n_task) the task's value where the tip is at (n, 3) and the pen is held as the arm holds it."""
+        target = np.zeros((len(tip_mm), self.n_task))
+        target[:, :3] = tip_mm
+        return target
+
+    def free_of(self, joints: FloatArray) -> FloatArray:
+        """The free joints (..., n_free) among all (..., n_joints)."""
+        chosen: FloatArray = np.ascontiguousarray(joints[..., list(self.arm.free_joints)])
+        return chosen
+
+
+def _chain(arm: Arm, joints: casadi.SX) -> tuple[list[casadi.SX], list[casadi.SX]]:
+    """Frames 1..n as 4 x 4 matrices, and the corners of the link chain as points."""
+    frame = casadi.SX.eye(4)
+    frames, corners = [], []
+    for index, joint in enumerate(arm.joints):
+        revolute = joint.kind is JointKind.REVOLUTE
+        theta = joint.theta_rad + (joints[index] if revolute else 0)
+        d = joint.d_mm + (0 if revolute else joints[index])
+        along = frame @ casadi.vertcat(0, 0, d, 1)
+        frame = frame @ _dh(theta, d, joint.a_mm, joint.alpha_rad)
+        corners += [along[:3], frame[:3, 3]]
+        frames.append(frame)
+    return frames, corners
+
+
+def _dh(theta: casadi.SX, d: casadi.SX, a_mm: float, alpha_rad: float) -> casadi.SX:
+    """Rz(theta) Tz(d) Tx(a) Rx(alpha), with exact zeros and ones where alpha is a right angle."""
+    c, s = casadi.cos(theta), casadi.sin(theta)
+    ca, sa = _exact(np.cos(alpha_rad)), _exact(np.sin(alpha_rad))
+    return casadi.vertcat(
+        casadi.horzcat(c, -s * ca, s * sa, a_mm * c),
+        casadi.horzcat(s, c * ca, -c * sa, a_mm * s),
+        casadi.horzcat(0, sa, ca, d),
+        casadi.horzcat(0, 0, 0, 1))
+
+
+def _exact(value: float) -> float:
+    rounded = round(value)
+    return float(rounded) if abs(value - rounded) < 1e-15 else float(value)
+
+
+@lru_cache(maxsize=16)
+def kinematics_of(arm: Arm) -> Kinematics:
+    """The kinematics of an arm, built once."""
+    return Kinematics(arm)

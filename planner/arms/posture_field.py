@@ -1,0 +1,245 @@
+"""The posture field: one posture for each distance from the base axis, chosen once for an arm.
+
+An arm whose first joint turns about the vertical meets a paper point (rho, azimuth) with the posture of
+(rho, 0) turned by the azimuth. So the arm's redundancy has to be decided along one line only, from
+the inner to the outer radius, and the choice is global: a dynamic programme over sampled postures finds
+the branch and the coarse course, an NLP over all radii at once polishes it. The same paper point
+is then always drawn with the same posture, whatever the drawing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import casadi
+import numpy as np
+from scipy.interpolate import BSpline, make_interp_spline
+
+from planner.arms.arm import Arm, JointKind
+from planner.arms.kinematics import Kinematics, kinematics_of
+from planner.arrays import BoolArray, FloatArray
+from planner.errors import PlanError
+from planner.arms.projection import joint_scale, project
+
+_COARSE_STEP_MM = 6.0
+_SAMPLES = 160
+_NODES = 49
+_EDGE_MM = 1.0
+"""The field is laid out over sqrt(outer + this - rho): near the stretched arm postures go with that root."""
+
+_LIMIT_MARGIN = 0.02
+"""Share of a joint's range that the field keeps from each end, so that lifts and blends have room."""
+
+
+@dataclass(frozen=True, eq=False)
+class PostureField:
+    """Postures along the ray of azimuth zero, pen on the paper.
+
+    radii_mm: (n,) increasing; postures: (n, n_free) of the free joints, rad or mm.
+    """
+
+    arm: Arm
+    radii_mm: FloatArray
+    postures: FloatArray
+
+    @cached_property
+    def _spline(self) -> BSpline:
+        return make_interp_spline(self._coordinate(self.radii_mm)[::-1], self.postures[::-1], k=5)
+
+    def _coordinate(self, radius_mm: FloatArray) -> FloatArray:
+        edge = float(self.radii_mm[-1]) + _EDGE_MM
+        inside = np.clip(radius_mm, self.radii_mm[0] - 0.5 * _EDGE_MM, self.radii_mm[-1] + 0.5 * _EDGE_MM)
+        coordinate: FloatArray = np.sqrt(edge - inside)
+        return coordinate
+
+    def reference(self, tip_mm: FloatArray) -> FloatArray:
+        """(n, n_free) field postures at tips (n, 3), whatever their height; outside the field's radii,
+        those of its edge."""
+        reference: FloatArray = np.ascontiguousarray(self._spline(self._coordinate(np.hypot(tip_mm[:, 0], tip_mm[:, 1]))))
+        reference[:, 0] += np.arctan2(tip_mm[:, 1], tip_mm[:, 0])
+        return reference
+
+    def postures_at(self, tip_mm: FloatArray) -> tuple[FloatArray, BoolArray]:
+        """Exact postures (n, n_free) at tips (n, 3), and where they exist within the joint limits."""
+        postures, exact = project(kinematics_of(self.arm), self.reference(tip_mm), tip_mm)
+        return postures, exact & within_limits(self.arm, postures)
+
+
+def within_limits(arm: Arm, free: FloatArray, slack: float = 1e-9, first_joint: bool = True) -> BoolArray:
+    """(n,) whether postures (n, n_free) keep all joint limits (without the first joint's, if not asked for)."""
+    joints = arm.complete(free)
+    start = 0 if first_joint else 1
+    inside: BoolArray = ((joints >= arm.minimum - slack) & (joints <= arm.maximum + slack))[:, start:].all(axis=1)
+    return inside
+
+
+def slowest_direction_mm_s(kinematics: Kinematics, free: FloatArray) -> FloatArray:
+    """(n,) tip speed that is possible in every direction with joint speeds of unit norm in units of their
+    limits: the smallest singular value of J diag(speed). Zero at a singular posture."""
+    _, jacobian = kinematics.task_and_jacobian(free)
+    values: FloatArray = np.linalg.svd(jacobian * joint_scale(kinematics), compute_uv=False)[:, -1]
+    return values
+
+
+@lru_cache(maxsize=16)
+def posture_field(arm: Arm) -> PostureField:
+    """The field of an arm. Errors: PlanError where the arm cannot have one."""
+    first = arm.joints[0]
+    if first.kind is not JointKind.REVOLUTE or 0 not in arm.free_joints:
+        raise PlanError(f"arm {arm.name}: method 'path' needs a first joint that turns about the vertical axis")
+    kinematics = kinematics_of(arm)
+    radii, samples = _sampled_rays(kinematics)
+    course = _coarse_course(kinematics, radii, samples)
+    if course is None:
+        raise PlanError(f"arm {arm.name}: no posture within the joint limits puts the pen on the paper"
+                        f" at {arm.workspace.inner_radius_mm:g} mm or more from the base axis")
+    return _polished(kinematics, *_stretched_to_edges(kinematics, *course))
+
+
+def _longest_reach_mm(arm: Arm) -> float:
+    reach = 0.0
+    for joint in arm.joints:
+        travel = 0.0 if joint.kind is JointKind.REVOLUTE else max(abs(joint.minimum), abs(joint.maximum))
+        reach += float(np.hypot(abs(joint.d_mm) + travel, joint.a_mm))
+    return reach
+
+
+def _usable(kinematics: Kinematics, free: FloatArray) -> BoolArray:
+    """(n,) whether postures keep limits with a margin, stay clear of singularities and above the paper."""
+    arm = kinematics.arm
+    joints = arm.complete(free)
+    room = _LIMIT_MARGIN * (arm.maximum - arm.minimum)
+    inside = ((joints >= arm.minimum + room) & (joints <= arm.maximum - room))[:, 1:].all(axis=1)
+    clear = slowest_direction_mm_s(kinematics, free) >= arm.workspace.min_tip_speed_mm_s
+    above = (kinematics.nodes_mm(free)[:, :-1, 2] >= -1e-6).all(axis=1)
+    usable: BoolArray = inside & clear & above
+    return usable
+
+
+def _on_ray(radii_mm: FloatArray) -> FloatArray:
+    return np.column_stack((radii_mm, np.zeros((len(radii_mm), 2))))
+
+
+def _sampled_rays(kinematics: Kinematics) -> tuple[FloatArray, list[FloatArray]]:
+    """Usable postures at each of some radii: random postures, projected onto the target."""
+    arm = kinematics.arm
+    radii = np.arange(arm.workspace.inner_radius_mm, _longest_reach_mm(arm), _COARSE_STEP_MM)
+    random = np.random.default_rng(20220601)  # any seed will do; the same one always, for the same field
+    low, high = kinematics.free_of(arm.minimum), kinematics.free_of(arm.maximum)
+    start = random.uniform(low, high, (len(radii) * _SAMPLES, kinematics.n_free))
+    targets = _on_ray(np.repeat(radii, _SAMPLES))
+    # Turn each sample about the base so that its tip already lies on the ray.
+    tips = kinematics.tip_mm(start)
+    start[:, 0] -= np.arctan2(tips[:, 1], tips[:, 0])
+    found, exact = project(kinematics, start, targets, iterations=12)
+    found[:, 0] = (found[:, 0] + np.pi) % (2 * np.pi) - np.pi
+    good = exact.copy()
+    good[exact] = _usable(kinematics, found[exact])
+    good = good.reshape(len(radii), _SAMPLES)
+    found = found.reshape(len(radii), _SAMPLES, -1)
+    return radii, [postures[mask] for postures, mask in zip(found, good, strict=True)]
+
+
+def _centredness(arm: Arm, free: FloatArray) -> FloatArray:
+    """(n,) mean square distance of the joints but the first from the middle of their ranges, 1 at the limits."""
+    joints = arm.complete(free)
+    middle, half = (arm.maximum + arm.minimum) / 2, (arm.maximum - arm.minimum) / 2
+    cost: FloatArray = (((joints - middle) / half)[:, 1:] ** 2).mean(axis=1) if arm.n_joints > 1 else np.zeros(len(free))
+    return cost
+
+
+def _coarse_course(kinematics: Kinematics, radii: FloatArray, samples: list[FloatArray]
+                   ) -> tuple[FloatArray, FloatArray] | None:
+    """The run of neighbouring radii that reaches furthest with no jump, and in it the cheapest postures."""
+    scale = joint_scale(kinematics)
+    slowest_mm_s = 0.25 * kinematics.arm.workspace.min_tip_speed_mm_s
+    longest_step_s = _COARSE_STEP_MM / slowest_mm_s
+    reward = 1e3  # a radius more counts above any cost
+    costs: list[FloatArray] = []
+    came_from: list[FloatArray] = []
+    for index, postures in enumerate(samples):
+        own = _centredness(kinematics.arm, postures) - reward
+        back = np.full(len(postures), -1)
+        if index and len(samples[index - 1]) and len(postures):
+            steps = np.abs(postures[:, None] - samples[index - 1][None]) / scale
+            step_s = steps.max(axis=2)
+            through = costs[-1] + 20.0 * (steps ** 2).sum(axis=2) / longest_step_s
+            through[step_s > longest_step_s] = np.inf
+            best = through.argmin(axis=1)
+            better = through[np.arange(len(postures)), best] < 0.0
+            back[better] = best[better]
+            own[better] += through[np.arange(len(postures)), best][better]
+        costs.append(own)
+        came_from.append(back)
+    ends = [(float(cost.min()), index) for index, cost in enumerate(costs) if len(cost)]
+    if not ends:
+        return None
+    _, index = min(ends)
+    choice = int(costs[index].argmin())
+    chosen: list[tuple[float, FloatArray]] = []
+    while choice >= 0:
+        chosen.append((float(radii[index]), samples[index][choice]))
+        choice = int(came_from[index][choice])
+        index -= 1
+    chosen.reverse()
+    return np.array([radius for radius, _ in chosen]), np.array([posture for _, posture in chosen])
+
+
+def _stretched_to_edges(kinematics: Kinematics, radii: FloatArray, postures: FloatArray
+                        ) -> tuple[FloatArray, FloatArray]:
+    """The course with its two ends moved out to where postures stop being usable."""
+
+    def furthest(radius: float, posture: FloatArray, step: float, bound: float) -> tuple[float, FloatArray]:
+        while abs(step) > 0.01:
+            further = min(max(radius + step, bound), np.inf) if step < 0 else radius + step
+            if further == radius:
+                break
+            found, exact = project(kinematics, posture[None], _on_ray(np.array([further])))
+            if exact[0] and _usable(kinematics, found)[0]:
+                radius, posture = further, found[0]
+            else:
+                step /= 2
+        return radius, posture
+
+    inner, first = furthest(float(radii[0]), postures[0], -_COARSE_STEP_MM / 2,
+                            kinematics.arm.workspace.inner_radius_mm)
+    outer, last = furthest(float(radii[-1]), postures[-1], _COARSE_STEP_MM / 2, 0.0)
+    return (np.concatenate(([inner], radii, [outer])), np.concatenate((first[None], postures, last[None])))
+
+
+def _polished(kinematics: Kinematics, radii: FloatArray, postures: FloatArray) -> PostureField:
+    """The NLP over all radii at once: smooth, away from the limits, exactly on the paper."""
+    arm = kinematics.arm
+    outer = radii[-1] + _EDGE_MM
+    coordinate = np.linspace(np.sqrt(outer - radii[0]), np.sqrt(_EDGE_MM), _NODES)
+    nodes = outer - coordinate ** 2
+    nodes[0], nodes[-1] = radii[0], radii[-1]
+    keep = np.concatenate(([True], np.diff(radii) > 1e-6))
+    guess = np.column_stack([np.interp(nodes, radii[keep], column) for column in postures[keep].T])
+    scale = joint_scale(kinematics)
+    q = casadi.SX.sym("q", kinematics.n_free, _NODES)
+    task = casadi.Function("task", [kinematics.free], [kinematics.task])
+    matrix, constant = arm.coupling_matrix
+    joints = casadi.DM(matrix) @ q + casadi.repmat(casadi.DM(constant), 1, _NODES)
+    middle, half = (arm.maximum + arm.minimum) / 2, (arm.maximum - arm.minimum) / 2
+    spread = (joints - casadi.repmat(casadi.DM(middle), 1, _NODES)) / casadi.repmat(casadi.DM(half), 1, _NODES)
+    step = (q[:, 1:] - q[:, :-1]) / casadi.repmat(casadi.DM(scale), 1, _NODES - 1)
+    bend = step[:, 1:] - step[:, :-1]
+    objective = (casadi.sumsqr(spread[1:, :]) / _NODES
+                 + 20.0 * _NODES * casadi.sumsqr(step) + 2.0 * _NODES ** 3 * casadi.sumsqr(bend))
+    tasks = casadi.horzcat(*[task(q[:, k]) for k in range(_NODES)])
+    others = joints[1:, :]
+    room = (_LIMIT_MARGIN * (arm.maximum - arm.minimum))[1:]
+    solver = casadi.nlpsol("field", "ipopt", {
+        "x": casadi.vec(q), "f": objective, "g": casadi.vertcat(casadi.vec(tasks), casadi.vec(others))},
+        {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False, "ipopt.max_iter": 200})
+    target = kinematics.task_target(_on_ray(nodes)).ravel()
+    low = np.tile(arm.minimum[1:] + room, _NODES)
+    high = np.tile(arm.maximum[1:] - room, _NODES)
+    solution = solver(x0=guess.ravel(), lbg=np.concatenate((target, low)), ubg=np.concatenate((target, high)))
+    refined = np.array(solution["x"]).reshape(_NODES, -1) if solver.stats()["success"] else guess
+    refined, exact = project(kinematics, refined, _on_ray(nodes))
+    if not exact.all():
+        raise PlanError(f"arm {arm.name}: the posture field did not converge")
+    return PostureField(arm, nodes, refined)

@@ -1,0 +1,56 @@
+"""From a reference posture to the nearest posture that puts the pen exactly on its target."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from planner.arms.kinematics import Kinematics
+from planner.arrays import BoolArray, FloatArray
+
+RESIDUAL_MM = 1e-9
+"""A posture is exact where its task misses by less than this (mm, or 1e-9 rad of pointing)."""
+
+
+def joint_scale(kinematics: Kinematics) -> FloatArray:
+    """(n_free,) speeds of the free joints: dividing by them measures postures in seconds of joint motion."""
+    return kinematics.free_of(kinematics.arm.max_velocity)
+
+
+def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *, iterations: int = 30
+            ) -> tuple[FloatArray, BoolArray]:
+    """For each target the posture closest to its reference, measured in joint time, and whether it is exact.
+
+    reference: (n, n_free); tip_mm: (n, 3). Solves `min |(q - r) / speed|` subject to `task(q) = target` by
+    linearising the task about the latest q (Gauss-Newton on the constraint):
+    `q <- r + S^2 J^T (J S^2 J^T)^-1 (target - task(q) + J (q - r))`, S = diag(speed).
+    Depends on target and reference alone, and smoothly, so smooth input gives a smooth joint path.
+    """
+    target = kinematics.task_target(tip_mm)
+    squared_scale = joint_scale(kinematics) ** 2
+    solution = reference.copy()
+    best = np.full(len(reference), np.inf)
+    active = np.arange(len(reference))
+    for _ in range(iterations):
+        task, jacobian = kinematics.task_and_jacobian(solution[active])
+        miss = target[active] - task
+        best[active] = np.abs(miss).max(axis=1, initial=0.0)
+        going = best[active] > RESIDUAL_MM
+        if not going.any():
+            break
+        active, miss, jacobian = active[going], miss[going], jacobian[going]
+        offset = solution[active] - reference[active]
+        wanted = miss + np.einsum("nij,nj->ni", jacobian, offset)
+        weighted = jacobian * squared_scale
+        gram = np.einsum("nij,nkj->nik", weighted, jacobian)
+        gram += 1e-12 * np.trace(gram, axis1=1, axis2=2)[:, None, None] * np.eye(gram.shape[1])
+        multiplier = np.linalg.solve(gram, wanted[:, :, None])
+        change = np.einsum("nij,ni->nj", weighted, multiplier[:, :, 0]) - offset
+        # A step of more than a quarter turn says that the linearisation is meaningless there.
+        longest = np.abs(change / joint_scale(kinematics)).max(axis=1)
+        allowed = 0.5 * np.pi / joint_scale(kinematics).max()
+        change *= np.minimum(1.0, allowed / np.maximum(longest, 1e-300))[:, None]
+        solution[active] += change
+    else:
+        task, _ = kinematics.task_and_jacobian(solution[active])
+        best[active] = np.abs(target[active] - task).max(axis=1, initial=0.0)
+    return solution, best <= 100 * RESIDUAL_MM

@@ -1,0 +1,65 @@
+"""Joint positions along smooth paths: quintic splines through exact postures at every knot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_banded
+
+from planner.arrays import FloatArray, IntArray
+from planner.ragged import starts_of, within
+from planner.spline import evaluate, evaluate_at, first_controls, weights
+
+DEGREE = 5
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class JointPaths:
+    """Joint paths of many strokes, laid end to end, before timing.
+
+    n_cells: (n_paths,); controls: (total cells + 5 n_paths, n_joints) in rad or mm. Splines reproduce linear
+    relations, so couplings hold between knots as they do at them.
+    """
+
+    n_cells: IntArray
+    controls: FloatArray
+
+    def positions(self, fractions: FloatArray, derivative: int = 0) -> FloatArray:
+        """(total cells, n_fractions, n_joints) positions or derivatives by sigma at fractions of every cell."""
+        return evaluate(self.controls, first_controls(self.n_cells, DEGREE), fractions, DEGREE, derivative)
+
+    def at(self, cells: IntArray, fractions: FloatArray, derivative: int = 0) -> FloatArray:
+        """(n, n_joints) at one fraction in each of the named cells (counted over all paths)."""
+        return evaluate_at(self.controls, first_controls(self.n_cells, DEGREE)[cells], fractions, DEGREE, derivative)
+
+
+def interpolate(n_cells: IntArray, knots: FloatArray) -> JointPaths:
+    """Splines through the knot positions, with first and second derivatives zero at both ends of each path.
+
+    n_cells: (n_paths,), each at least 4; knots: (total cells + n_paths, n_joints), the positions at
+    sigma = 0 .. n_cells of each path in turn. The ends are at rest because sigma passes them with
+    the pen's arc length growing as its cube.
+    """
+    count = n_cells + DEGREE
+    total = int(count.sum())
+    position = within(count)
+    last = np.repeat(count, count) - 1
+    starts = starts_of(count)[:-1]
+    value, slope, bend = (weights(DEGREE, np.zeros(1), derivative)[0, :5] for derivative in range(3))
+    band = np.zeros((9, total))  # band[4 + row - column, column]
+
+    def set_rows(rows: IntArray, first_column: IntArray, coefficients: FloatArray) -> None:
+        for k, coefficient in enumerate(coefficients):
+            band[4 + rows - (first_column + k), first_column + k] = coefficient
+
+    inner = np.flatnonzero((position >= 2) & (position <= last - 2))
+    set_rows(inner, inner - 2, value)
+    ends = starts + count - 5
+    set_rows(starts, starts, slope)
+    set_rows(starts + 1, starts, bend)
+    set_rows(starts + count - 2, ends, bend)
+    set_rows(starts + count - 1, ends, slope)
+    right = np.zeros((total, knots.shape[1]))
+    right[inner] = knots
+    return JointPaths(n_cells, solve_banded((4, 4), band, right))

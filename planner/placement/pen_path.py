@@ -1,0 +1,219 @@
+"""From polylines to smooth pen paths: C4 curves within a tolerance that start and end fit for rest.
+
+Each path is a uniform quintic B-spline in sigma whose control points are taken from the polyline (the
+variation-diminishing approximation of Schoenberg, 1967). It rounds every corner by an amount that is proportional to the local
+spacing of control points, so the spacing is made fine where the polyline turns and coarse where it is straight.
+Near both ends the arc length grows with sigma cubed, as it grows with time cubed when a constant jerk
+starts a motion: sigma then moves at a finite rate even where the pen is at rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.arrays import FloatArray, IntArray
+from planner.ragged import starts_of, within
+from planner.spline import evaluate, first_controls
+
+DEGREE = 5
+_LONGEST_CELL_MM = 0.8
+_GRADING = 0.6
+"""How fast the spacing of control points may grow, mm per mm of path."""
+_RAMP_CELLS = 6
+"""Cells over which sigma changes from cubic to proportional to arc length, at each end."""
+_FEWEST_CELLS = 16
+_ROUNDS = 14
+_CORNER_GAIN = 0.5694
+"""A lone corner of turning angle t is cut by 0.5694 sin(t / 2) of the spacing: half the mean absolute
+deviation of the quintic B-spline kernel times |u1 - u0| = 2 sin(t / 2)."""
+_GAP_MM = 1e4
+_FIRST_OFFSETS = np.array([-5.0, 0.5, 0.0, -0.5, 5.0])
+"""Control points of sigma cubed on a uniform quintic spline with a knot at zero (its blossom)."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PenPaths:
+    """Smooth paths of many strokes, laid end to end.
+
+    n_cells: (n_paths,) cells of each path; controls_mm: (total cells + 5 n_paths, 2) control points on
+    the paper. Path parameter sigma runs from 0 to n_cells.
+    """
+
+    n_cells: IntArray
+    controls_mm: FloatArray
+
+    def points(self, fractions: FloatArray, derivative: int = 0) -> FloatArray:
+        """(total cells, n_fractions, 2) points, or derivatives by sigma, at fractions of every cell."""
+        return evaluate(self.controls_mm, first_controls(self.n_cells, DEGREE), fractions, DEGREE, derivative)
+
+
+def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPaths:
+    """Smooth paths that stay within the tolerance of their polylines, and these of them.
+
+    polylines: each (n >= 2, 2) in mm with distinct neighbours. Work is linear in the number of points.
+    """
+    line = _Polylines.of(polylines)
+    anchors_mm, spacings_mm = line.corner_spacings(tolerance_mm)
+    for _ in range(_ROUNDS):
+        spacing = _Spacing.of(line, anchors_mm, spacings_mm)
+        paths, arcs_mm = _sampled(line, spacing)
+        cut_mm, at_mm, used_mm = _deviation(line, paths, arcs_mm, spacing)
+        worst = cut_mm > tolerance_mm
+        if not worst.any():
+            break
+        # A lone corner is cut in proportion to the spacing, a bend in proportion to its square.
+        finer = used_mm[worst] * np.clip(0.85 * tolerance_mm / cut_mm[worst], 0.25, 0.9)
+        anchors_mm = np.concatenate((anchors_mm, at_mm[worst]))
+        spacings_mm = np.concatenate((spacings_mm, finer))
+    return paths
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Polylines:
+    """Polylines on one axis of arc length, with a gap between each and the next that keeps them apart."""
+
+    points_mm: FloatArray
+    arc_mm: FloatArray
+    first: IntArray
+    last: IntArray
+
+    @staticmethod
+    def of(polylines: Sequence[FloatArray]) -> _Polylines:
+        counts = np.array([len(points) for points in polylines])
+        points = np.concatenate(polylines)
+        starts = starts_of(counts)
+        steps = np.zeros(len(points))
+        steps[1:] = np.hypot(*np.diff(points, axis=0).T)
+        steps[starts[1:-1]] = _GAP_MM
+        return _Polylines(points, np.cumsum(steps), starts[:-1], starts[1:] - 1)
+
+    @property
+    def begin_mm(self) -> FloatArray:
+        return self.arc_mm[self.first]
+
+    @property
+    def end_mm(self) -> FloatArray:
+        return self.arc_mm[self.last]
+
+    def at(self, arc_mm: FloatArray) -> FloatArray:
+        """(..., 2) points at positions on the axis of arc length."""
+        return np.stack([np.interp(arc_mm, self.arc_mm, column) for column in self.points_mm.T], axis=-1)
+
+    def corner_spacings(self, tolerance_mm: float) -> tuple[FloatArray, FloatArray]:
+        """Positions of all vertices, and the spacing with which each is cut by the tolerance if alone."""
+        steps = np.diff(self.points_mm, axis=0)
+        steps /= np.maximum(np.hypot(*steps.T), 1e-300)[:, None]
+        chord = np.zeros(len(self.points_mm))  # 2 sin(turning angle / 2)
+        chord[1:-1] = np.hypot(*np.diff(steps, axis=0).T)
+        chord[self.first] = chord[self.last] = 0.0
+        spacing = np.minimum(0.95 * tolerance_mm / np.maximum(0.5 * _CORNER_GAIN * chord, 1e-9), _LONGEST_CELL_MM)
+        return self.arc_mm, spacing
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Spacing:
+    """Spacing of control points as a piecewise linear function of arc length, and the cells it makes.
+
+    node_mm, spacing_mm: the function; cells: its cumulated number of cells, the integral of 1 / spacing.
+    """
+
+    node_mm: FloatArray
+    spacing_mm: FloatArray
+    cells: FloatArray
+    begin: FloatArray
+    total: FloatArray
+
+    @staticmethod
+    def of(line: _Polylines, anchors_mm: FloatArray, spacings_mm: FloatArray) -> _Spacing:
+        order = np.argsort(anchors_mm, kind="stable")
+        at, wanted = anchors_mm[order], spacings_mm[order]
+        forward = np.minimum.accumulate(wanted - _GRADING * at) + _GRADING * at
+        backward = np.minimum.accumulate((wanted + _GRADING * at)[::-1])[::-1] - _GRADING * at
+        wanted = np.minimum(forward, backward)
+        keep = np.concatenate(([True], np.diff(at) > 1e-9))
+        at, wanted = at[keep], wanted[keep]
+        # Between two anchors the spacing rises, stays at its largest, and falls.
+        length, a, b = np.diff(at), wanted[:-1], wanted[1:]
+        top = np.minimum(0.5 * (a + b + _GRADING * length), _LONGEST_CELL_MM)
+        rise, fall = np.maximum(top - a, 0) / _GRADING, np.maximum(top - b, 0) / _GRADING
+        node = np.empty(3 * len(length) + 1)
+        value = np.empty_like(node)
+        node[0::3], value[0::3] = at, wanted
+        node[1::3], value[1::3] = at[:-1] + rise, np.maximum(top, np.minimum(a, b))
+        node[2::3], value[2::3] = at[1:] - fall, np.maximum(top, np.minimum(a, b))
+        node = np.maximum.accumulate(node)
+        step, slope = np.diff(node), np.diff(value)
+        inverse = np.where(np.abs(slope) > 1e-9 * value[:-1], np.log(value[1:] / value[:-1]) / np.where(slope == 0, 1, slope),
+                           1 / value[:-1])
+        cells = np.concatenate(([0.0], np.cumsum(step * inverse)))
+        begin = np.interp(line.begin_mm, node, cells)
+        return _Spacing(node, value, cells, begin, np.interp(line.end_mm, node, cells) - begin)
+
+    def arc_mm(self, cells: FloatArray) -> FloatArray:
+        """Position on the axis of arc length after so many cells: the exact inverse of `cells`."""
+        k = np.clip(np.searchsorted(self.cells, cells, side="right") - 1, 0, len(self.cells) - 2)
+        step = self.node_mm[k + 1] - self.node_mm[k]
+        slope = (self.spacing_mm[k + 1] - self.spacing_mm[k]) / np.maximum(step, 1e-12)
+        into = cells - self.cells[k]
+        flat = np.abs(slope * into) < 1e-9
+        growth = np.where(flat, into, np.expm1(slope * into) / np.where(flat, 1.0, slope))
+        return self.node_mm[k] + np.clip(self.spacing_mm[k] * growth, 0.0, step)
+
+    def at(self, arc_mm: FloatArray) -> FloatArray:
+        spacing: FloatArray = np.interp(arc_mm, self.node_mm, self.spacing_mm)
+        return spacing
+
+
+def _sampled(line: _Polylines, spacing: _Spacing) -> tuple[PenPaths, FloatArray]:
+    """The splines with that spacing, and the arc length of each of their control points."""
+    n_cells = np.maximum(np.ceil(spacing.total).astype(np.int64) + _RAMP_CELLS, _FEWEST_CELLS)
+    count = n_cells + DEGREE
+    sigma = within(count) - 2.0
+    per_control = np.repeat(np.arange(len(n_cells)), count)
+    stretch = spacing.total / (n_cells - _RAMP_CELLS)
+
+    def arc_at(sigma: FloatArray) -> FloatArray:
+        cells = spacing.begin[per_control] + stretch[per_control] * _ramped(sigma, n_cells[per_control])
+        return spacing.arc_mm(cells)
+
+    middle = arc_at(sigma)
+    bend = arc_at(sigma + 1) - 2 * middle + arc_at(sigma - 1)
+    arc = np.clip(middle - 0.25 * bend, line.begin_mm[per_control], line.end_mm[per_control])
+    controls = line.at(arc)
+    starts = starts_of(count)
+    half_mm = 0.5 * (line.end_mm - line.begin_mm)
+    for ends_mm, first, sign, point, neighbour in (
+            (line.begin_mm, starts[:-1], 1, line.first, line.first + 1),
+            (line.end_mm, starts[1:] - 1, -1, line.last, line.last - 1)):
+        cubic_mm = np.minimum(stretch / _RAMP_CELLS ** 2 * spacing.at(ends_mm), half_mm / 50)
+        tangent = line.points_mm[neighbour] - line.points_mm[point]
+        tangent /= np.hypot(*tangent.T)[:, None]
+        for k, offset in enumerate(_FIRST_OFFSETS):
+            controls[first + sign * k] = line.points_mm[point] + (offset * cubic_mm)[:, None] * tangent
+            arc[first + sign * k] = ends_mm + sign * offset * cubic_mm
+    return PenPaths(n_cells, controls), arc
+
+
+def _ramped(sigma: FloatArray, n_cells: IntArray) -> FloatArray:
+    """Cells of uniform rate passed at sigma: of slope x^2 (3 - 2 x), x = sigma / ramp, near both ends, else 1."""
+    def short_of(distance: FloatArray) -> FloatArray:
+        x = np.clip(distance / _RAMP_CELLS, 0.0, 1.0)
+        return _RAMP_CELLS * (x ** 3 - 0.5 * x ** 4 - x + 0.5)  # integral of slope - 1, zero from the ramp's end on
+
+    inside = np.clip(sigma, 0.0, n_cells)
+    ramped: FloatArray = inside + short_of(inside) - short_of(n_cells - inside) - 0.5 * _RAMP_CELLS
+    return ramped
+
+
+def _deviation(line: _Polylines, paths: PenPaths, arcs_mm: FloatArray, spacing: _Spacing
+               ) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """How far each sampled curve point is from the polyline point of the same arc length, an upper bound
+    of the distance both ways; where on the axis of arc length that is, and the spacing used there."""
+    fractions = np.array([0.0, 0.25, 0.5, 0.75])
+    cells = first_controls(paths.n_cells, DEGREE)
+    at = evaluate(arcs_mm[:, None], cells, fractions, DEGREE)[:, :, 0].ravel()
+    gap = evaluate(paths.controls_mm, cells, fractions, DEGREE).reshape(-1, 2) - line.at(at)
+    return np.hypot(*gap.T), at, spacing.at(at)

@@ -1,0 +1,70 @@
+"""Uniform B-splines over integer knots, many at once.
+
+Cell k of a curve of degree p spans sigma in [k, k + 1] and is made of the control points k .. k + p. A
+curve of n cells has n + p control points.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import comb, factorial
+
+import numpy as np
+
+from planner.arrays import FloatArray, IntArray
+from planner.ragged import starts_of, within
+
+
+@lru_cache(maxsize=8)
+def cell_polynomials(degree: int) -> FloatArray:
+    """(degree + 1, degree + 1): row i holds the coefficients, lowest power first, of the weight of control
+    point k + i within cell k, as a polynomial of the fraction in [0, 1] (de Boor, A Practical Guide to
+    Splines, chapter IX, for uniform knots)."""
+    matrix = np.zeros((degree + 1, degree + 1))
+    for i in range(degree + 1):
+        for power in range(degree + 1):
+            total = 0.0
+            for j in range(i, degree + 1):
+                total += (-1) ** (j - i) * comb(degree + 1, j - i) * (degree - j) ** (degree - power)
+            matrix[i, power] = comb(degree, power) * total / factorial(degree)
+    return matrix
+
+
+def weights(degree: int, fractions: FloatArray, derivative: int = 0) -> FloatArray:
+    """(n_fractions, degree + 1) weights of the control points of a cell for the value or a derivative."""
+    polynomials = cell_polynomials(degree)
+    result = np.zeros((len(fractions), degree + 1))
+    for power in range(derivative, degree + 1):
+        factor = factorial(power) / factorial(power - derivative)
+        result += factor * polynomials[:, power] * np.asarray(fractions)[:, None] ** (power - derivative)
+    return result
+
+
+def first_controls(n_cells: IntArray, degree: int) -> IntArray:
+    """(total cells,) index of the first control point of each cell, for curves laid end to end."""
+    starts = starts_of(n_cells + degree)[:-1]
+    indices: IntArray = np.repeat(starts, n_cells) + within(n_cells)
+    return indices
+
+
+def evaluate(controls: FloatArray, cell_controls: IntArray, fractions: FloatArray, degree: int,
+             derivative: int = 0) -> FloatArray:
+    """Values (n_cells, n_fractions, d) at the same fractions of every cell.
+
+    controls: (n_controls, d); cell_controls: (n_cells,) from `first_controls`.
+    """
+    table = weights(degree, fractions, derivative)
+    values = np.zeros((len(cell_controls), len(fractions), controls.shape[1]))
+    for i in range(degree + 1):
+        values += controls[cell_controls + i][:, None, :] * table[None, :, i, None]
+    return values
+
+
+def evaluate_at(controls: FloatArray, cell_controls: IntArray, fractions: FloatArray, degree: int,
+                derivative: int = 0) -> FloatArray:
+    """Values (n, d) at one fraction per row: fractions (n,), cell_controls (n,)."""
+    table = weights(degree, fractions, derivative)
+    values = np.zeros((len(cell_controls), controls.shape[1]))
+    for i in range(degree + 1):
+        values += controls[cell_controls + i] * table[:, i, None]
+    return values
