@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from hardware.clock import Clock
 from hardware.driver import Driver
 from hardware.stopping import brake, lift
@@ -80,7 +82,7 @@ def play(set_points: FloatArray, rate_hz: float, arm: Arm, driver: Driver, clock
             report(sent, total)
         resting = set_points[max(sent - 1, 0)]
         if stopped and sent:
-            resting = _stop(set_points, sent - 1, rate_hz, start_s, arm, driver, clock)
+            resting = _stop(set_points, sent - 1, rate_hz, arm, driver, clock)
         duration_s = clock.now_s() - start_s
     finally:
         driver.close()
@@ -88,26 +90,23 @@ def play(set_points: FloatArray, rate_hz: float, arm: Arm, driver: Driver, clock
                   lateness.stalls, stopped, float(tip_at(arm, resting).position_mm[2]))
 
 
-def _stop(set_points: FloatArray, sample: int, rate_hz: float, start_s: float,
-          arm: Arm, driver: Driver, clock: Clock) -> FloatArray:
-    """Brake from the sample sent last and lift; the posture that the arm is left in."""
+def _stop(set_points: FloatArray, sample: int, rate_hz: float, arm: Arm, driver: Driver, clock: Clock) -> FloatArray:
+    """Brake from the sample sent last, the next being due now, and lift; the posture that the arm is left in."""
     refine = math.ceil(_STOPPING_RATE_HZ / rate_hz)
     period_s = 1.0 / (rate_hz * refine)
-    resting: FloatArray = set_points[sample]
-    began_s = start_s + sample / rate_hz
     braking = brake(arm, set_points, sample, rate_hz, refine)
-    for k, point in enumerate(braking, start=1):
-        clock.sleep_until(began_s + k * period_s)
-        driver.send(point)
-        resting = point
+    _send_all(braking, clock.now_s(), period_s, driver, clock)
     # The arm stands still: working out the lift now costs nothing but a moment's rest.
-    lifting = lift(arm, resting, rate_hz * refine)
-    began_s = clock.now_s()
-    for k, point in enumerate(lifting, start=1):
-        clock.sleep_until(began_s + k * period_s)
-        driver.send(point)
-        resting = point
+    lifting = lift(arm, braking[-1], rate_hz * refine)
+    _send_all(lifting, clock.now_s() + period_s, period_s, driver, clock)
+    resting: FloatArray = np.concatenate((braking, lifting))[-1]
     return resting
+
+
+def _send_all(points: FloatArray, first_s: float, period_s: float, driver: Driver, clock: Clock) -> None:
+    for k, point in enumerate(points):
+        clock.sleep_until(first_s + k * period_s)
+        driver.send(point)
 
 
 class _Lateness:

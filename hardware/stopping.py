@@ -22,6 +22,8 @@ _MARGIN = 1.05
 _LONGEST_LIFT_S = 1.0
 """No lift is slowed down beyond this: what asks for more is a bend where a joint runs into its limit."""
 _LIFTED_MM = 0.01
+_DEGREE = 6
+"""Of the polynomial in height through the postures of a lift, smooth at any rate."""
 
 
 def brake(arm: Arm, path: FloatArray, sample: int, rate_hz: float, refine: int) -> FloatArray:
@@ -54,9 +56,14 @@ def lift(arm: Arm, start: FloatArray, rate_hz: float) -> FloatArray:
     if len(postures) < 2:
         return np.empty((0, arm.n_joints))
 
+    height = np.linspace(0, 1, len(postures))[:, None]
+    powers = np.arange(1, min(_DEGREE, len(postures) - 1) + 1)
+    coefficients = np.linalg.lstsq(height**powers, postures - start, rcond=None)[0]
+
     def at(n: int) -> FloatArray:
-        u = np.arange(1, n + 1) / n
-        return interpolate(postures, (10 * u**3 - 15 * u**4 + 6 * u**5) * (len(postures) - 1))
+        u = np.arange(1, n + 1)[:, None] / n
+        points: FloatArray = start + (10 * u**3 - 15 * u**4 + 6 * u**5) ** powers @ coefficients
+        return points
 
     n, points, rest = 2, at(2), np.repeat(start[None], 3, axis=0)
     while (n < _LONGEST_LIFT_S * rate_hz
