@@ -19,6 +19,8 @@ PALE_ORANGE = "#F2C66D"  # the orange E69F00, lighter, to lie under thin lines
 GREY = "#8C8C8C"
 INK = "#222222"
 
+_LONGEST_HEADING = 44  # characters, however wide, that leave room for a legend beside them
+
 _STYLE = {
     "font.family": "DejaVu Sans",  # comes with matplotlib, so a picture is the same everywhere
     "font.size": 8.0,
@@ -43,7 +45,7 @@ _STYLE = {
     "legend.fontsize": 8.0,
     "lines.solid_joinstyle": "round",
     "lines.solid_capstyle": "round",
-    "savefig.dpi": 200.0,
+    "savefig.dpi": 240.0,
     "pdf.fonttype": 42,
     "svg.hashsalt": "plan",  # the same trajectory gives the same file, byte for byte
     "agg.path.chunksize": 20_000,
@@ -59,6 +61,8 @@ def set_title(figure: Figure, trajectory: Trajectory, remark: str, left_in: floa
     """Two lines at the top left, `left_in` inches from the edge: what was drawn in bold, and a remark."""
     width_in, height_in = (float(side) for side in figure.get_size_inches())
     heading = _printable(trajectory.drawing) or "trajectory"
+    if len(heading) > _LONGEST_HEADING:
+        heading = heading[:_LONGEST_HEADING - 1] + "…"
     # a file name may hold dollar signs, which would be taken for a formula
     figure.text(left_in / width_in, 1 - 0.14 / height_in, heading, va="top", size=11, weight="bold", parse_math=False)
     figure.text(left_in / width_in, 1 - 0.37 / height_in, _printable(remark), va="top", size=8.5, color="#555555",

@@ -115,7 +115,7 @@ def _draw(axes: Axes, profile: _Profile) -> None:
     axes.plot(*min_max_envelope(profile.times_s, profile.values, _N_BINS),
               color=BLUE, linewidth=0.5 if thin else 1.0, zorder=3)
     for limit in (profile.low, profile.high):
-        axes.axhline(limit, color=VERMILION, linewidth=0.9, linestyle=(0, (5, 2)), zorder=2.5)
+        axes.axhline(limit, color=VERMILION, linewidth=0.9, linestyle=(0, (5, 2)), zorder=3.5)
     bottom = min(profile.low, float(profile.values.min()))
     top = max(profile.high, float(profile.values.max()))
     room = 0.1 * (top - bottom)

@@ -113,3 +113,11 @@ def test_another_arm_s_trajectory_is_refused(arm: Arm, make_trajectory: MakeTraj
     other = replace(make_trajectory(), columns=("q1_deg", "q2_deg", "q3_deg"))
     with pytest.raises(UsageError, match=r"q2_deg.*'three'.*d2_mm"):
         plot_profiles(other, arm)
+
+
+def test_a_long_name_leaves_the_legend_its_room(arm: Arm, make_trajectory: MakeTrajectory) -> None:
+    figure = plot_profiles(make_trajectory(swing=50.0, drawing="W" * 300 + ".svg"), arm)
+    figure.draw_without_rendering()
+    heading = figure.texts[0].get_window_extent()
+    (legend,) = figure.legends
+    assert heading.x1 < legend.get_window_extent().x0
