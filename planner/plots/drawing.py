@@ -18,7 +18,7 @@ from planner.drawing.flatten import flatten_all
 from planner.plots.look import BLUE, GREY, INK, PALE_ORANGE, planner_style, set_title
 from planner.trajectory import Trajectory
 
-_FLATTEN_TOLERANCE_MM = 0.02  # a tenth of a pixel
+_FLATTEN_TOLERANCE_MM = 0.02  # well under a pixel
 _TAP_EXTENT_MM = 0.02  # a stroke that stays within this is a dot
 _WIDTH_IN, _TOP_IN, _BOTTOM_IN, _LEFT_IN, _RIGHT_IN = 10.0, 0.95, 0.5, 0.6, 0.25
 
