@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from array import array
 from collections import Counter
 from dataclasses import dataclass
 from xml.parsers import expat
@@ -15,7 +16,7 @@ from planner.drawing.rewrite import PLACEHOLDERS
 
 # Beyond this a coordinate is a mistake, and the normaliser clamps numbers at 2^31.
 LARGEST_COORDINATE = 1e9
-_TOKEN = re.compile(r"[MLCQZ]|[^\sMLCQZ]+")
+_TOKEN = re.compile(r"\S+")
 _URL = re.compile(r"url\(#(.*)\)")
 _IDENTITY = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 _NOTHING = (np.inf, np.inf, -np.inf, -np.inf)
@@ -209,15 +210,16 @@ def _rectangle(data: str) -> Box | None:
 def _subpaths(data: str) -> list[FloatArray]:
     """Cubics (n, 4, 2) of each subpath: closed with a line where Z needs one, four equal points for a dot."""
     subpaths = []
-    tokens = iter(_TOKEN.findall(data))
-    flat: list[float] = []
-    is_line: list[bool] = []
+    # Typed arrays and an iterator: a path may hold millions of numbers.
+    tokens = (match[0] for match in _TOKEN.finditer(data))
+    flat = array("d")
+    is_line = bytearray()
     x = y = start_x = start_y = 0.0
 
     def finish() -> None:
         if flat:
             subpaths.append(_curves(flat, is_line))
-            flat.clear()
+            del flat[:]
             is_line.clear()
 
     for letter in tokens:
@@ -228,33 +230,33 @@ def _subpaths(data: str) -> list[FloatArray]:
             continue
         if letter == "Z":
             if not flat or (x, y) != (start_x, start_y):
-                flat += (x, y, x, y, start_x, start_y, start_x, start_y)
+                flat.extend((x, y, x, y, start_x, start_y, start_x, start_y))
                 is_line.append(True)
             finish()
             x, y = start_x, start_y
             continue
         if letter == "L":
             end_x, end_y = float(next(tokens)), float(next(tokens))
-            flat += (x, y, x, y, end_x, end_y, end_x, end_y)
+            flat.extend((x, y, x, y, end_x, end_y, end_x, end_y))
         else:
             x1, y1, x2, y2 = (float(next(tokens)) for _ in range(4))
             if letter == "C":
                 end_x, end_y = float(next(tokens)), float(next(tokens))
-                flat += (x, y, x1, y1, x2, y2, end_x, end_y)
+                flat.extend((x, y, x1, y1, x2, y2, end_x, end_y))
             else:
                 end_x, end_y = x2, y2
-                flat += (x, y, x + (x1 - x) / 1.5, y + (y1 - y) / 1.5,
-                         end_x + (x1 - end_x) / 1.5, end_y + (y1 - end_y) / 1.5, end_x, end_y)
+                flat.extend((x, y, x + (x1 - x) / 1.5, y + (y1 - y) / 1.5,
+                             end_x + (x1 - end_x) / 1.5, end_y + (y1 - end_y) / 1.5, end_x, end_y))
         is_line.append(letter == "L")
         x, y = end_x, end_y
     finish()
     return subpaths
 
 
-def _curves(flat: list[float], is_line: list[bool]) -> FloatArray:
+def _curves(flat: array[float], is_line: bytearray) -> FloatArray:
     """Curves with the control points of lines at their thirds and those of zero length dropped."""
     curves = np.array(flat).reshape(-1, 4, 2)
-    lines: BoolArray = np.array(is_line)
+    lines: BoolArray = np.array(is_line, dtype=np.bool_)
     step = (curves[lines, 3] - curves[lines, 0]) / 3.0
     curves[lines, 1] += step
     curves[lines, 2] -= step

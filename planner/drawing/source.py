@@ -16,7 +16,7 @@ from planner.errors import DrawingError
 
 SIZE_LIMIT_BYTES = 32 * 1024 * 1024
 DEPTH_LIMIT = 500
-ELEMENT_LIMIT = 1_000_000
+ELEMENT_LIMIT = 250_000
 SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 SHAPES = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
 
