@@ -44,7 +44,7 @@ class Played:
     def lines(self) -> list[str]:
         """The same in words."""
         end = "stopped" if self.stopped else "played"
-        rests = f"the pen rests {self.pen_height_mm:.2f} mm above the paper"
+        rests = f"the pen rests {round(self.pen_height_mm, 2) + 0.0:.2f} mm above the paper"
         worst = f"{self.worst_late_s * 1e3:.2f} ms at worst; {self.late} by more than a period"
         words = [f"{end} after {self.sent} of {self.total} samples and {self.duration_s:.2f} s; {rests}",
                  f"samples were late by {self.mean_late_s * 1e3:.2f} ms on average and {worst}"]

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from planner.cli.parser import Parser
 from planner.cli.terminal import print_lines
-from planner.errors import UsageError
+from planner.errors import PlanError, UsageError
+
+if TYPE_CHECKING:
+    from planner.arms.arm import Arm
 
 _DESCRIPTION = """\
 List the arms that come with the planner, or describe one: its Denavit-Hartenberg table, limits, couplings and pen."""
@@ -37,12 +40,28 @@ def arm(arguments: list[str]) -> int:
         print_lines(_columns([(one.name, f"{one.n_joints} joints", one.source) for one in known]))
         return 0
     described = load_arm(options.arm)
-    description = arm_description(described)
+    description = arm_description(described) | _paper(described)
     if options.json:
         print_lines([json.dumps(description, indent=2)])
     else:
         print_lines([f"{described.name}: {described.source}", "", *_table(description)])
     return 0
+
+
+def _paper(arm: Arm) -> dict[str, Any]:
+    """The keys `reach_mm` and `canvas`; both None for an arm that cannot draw."""
+    from planner.cli.workspace import paper_in_reach
+
+    try:
+        paper = paper_in_reach(arm)
+    except PlanError:
+        return {"reach_mm": None, "canvas": None}
+    low, high = paper.reach_mm
+    return {
+        "reach_mm": {"min": round(low, 3), "max": round(high, 3)},
+        "canvas": {"width_mm": round(paper.width_mm, 3), "height_mm": round(paper.height_mm, 3),
+                   "corners_arm_mm": paper.corners_arm_mm.round(3).tolist()},
+    }
 
 
 def _table(arm: dict[str, Any]) -> list[str]:
@@ -60,13 +79,13 @@ def _table(arm: dict[str, Any]) -> list[str]:
     pen = arm["pen"]
     lines.append(f"pen: travels {_number(pen['lift_mm'])} mm above the paper, moves only straight up or down "
                  f"below {_number(pen['clearance_mm'])} mm")
-    if "reach_mm" in arm:
-        lines.append(f"reach: {_number(arm['reach_mm']['min'])} to {_number(arm['reach_mm']['max'])} mm from the base")
-    if "canvas" in arm:
-        canvas = arm["canvas"]
-        corners = ", ".join(f"({_number(x)}, {_number(y)})" for x, y in canvas["corners_arm_mm"])
-        lines.append(f"canvas: {_number(canvas['width_mm'])} x {_number(canvas['height_mm'])} mm, "
-                     f"corners at {corners} mm")
+    reach, canvas = arm["reach_mm"], arm["canvas"]
+    if reach is None or canvas is None:
+        lines.append("canvas: none (nowhere is the paper reached with the pen down and up, within limits)")
+        return lines
+    corners = ", ".join(f"({_number(x)}, {_number(y)})" for x, y in canvas["corners_arm_mm"])
+    lines.append(f"reach: {_number(reach['min'])} to {_number(reach['max'])} mm from the base")
+    lines.append(f"canvas: {_number(canvas['width_mm'])} x {_number(canvas['height_mm'])} mm, corners {corners} mm")
     return lines
 
 

@@ -43,7 +43,7 @@ def check(arguments: list[str]) -> int:
         check_target(options.json, *sources)
 
     from planner.arms.arm_file import load_arm
-    from planner.checking import check_trajectory
+    from planner.checking.check import check_trajectory
     from planner.drawing.svg import read_drawing
     from planner.trajectory import read_trajectory, written_aside
 

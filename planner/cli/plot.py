@@ -59,9 +59,8 @@ def plot(arguments: list[str]) -> int:
 
 
 def _paper(trajectory: Trajectory, arm: Arm, drawing: Path | None) -> Figure:
-    from planner.arms.canvas import usable_canvas
-    from planner.arms.posture_field import posture_field
     from planner.checking.chain import chain_poses
+    from planner.cli.workspace import paper_in_reach
     from planner.drawing.svg import read_drawing
     from planner.plots.drawing import plot_drawing
 
@@ -69,6 +68,6 @@ def _paper(trajectory: Trajectory, arm: Arm, drawing: Path | None) -> Figure:
         raise UsageError(f"the trajectory moves {', '.join(trajectory.columns)}; "
                          f"arm '{arm.name}' has {', '.join(arm.column_names)}")
     tip_mm = chain_poses(arm, arm.from_file_units(trajectory.positions)).tip_mm.T
-    radii_mm = posture_field(arm).radii_mm
+    paper = paper_in_reach(arm)
     return plot_drawing(trajectory, tip_mm, read_drawing(drawing) if drawing else None,
-                        usable_canvas(arm, arm.pen.lift_mm).corners_arm_mm, (float(radii_mm[0]), float(radii_mm[-1])))
+                        paper.corners_arm_mm, paper.reach_mm)
