@@ -103,7 +103,7 @@ def _near(free: IntArray, points: FloatArray, _: FloatArray, tolerance_mm: float
     tree = cKDTree(points[free])
     gaps, others = tree.query(points[free], k=k, distance_upper_bound=tolerance_mm * (1.0 + 1e-9))
     rows, columns = np.nonzero(np.isfinite(gaps))
-    return free[rows], free[others[rows, columns]]
+    return free[rows], free[np.asarray(others, dtype=np.int64)[rows, columns]]
 
 
 def _chain(partner: IntArray, index: int) -> tuple[list[int], bool]:

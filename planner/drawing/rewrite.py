@@ -35,6 +35,9 @@ _GEOMETRY = {"circle": ("cx", "cy", "r"), "ellipse": ("cx", "cy", "rx", "ry"),
 _SHAPE_SELECTORS = re.compile(r"\b(?:path|circle|ellipse|rect)\b|\b(?:cx|cy|rx|ry|r)\s*:|\[|:nth|-of-type")
 _LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?)\s*(px|mm|cm|in|pt|pc)?\s*")
 _PX_PER_UNIT = {None: 1.0, "px": 1.0, "mm": 96.0 / 25.4, "cm": 96.0 / 2.54, "in": 96.0, "pt": 4.0 / 3.0, "pc": 16.0}
+# Units that CSS has and the normaliser has not: it would drop the element without a word.
+_UNKNOWN_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*(q|rem)\s*", re.IGNORECASE)
+_LENGTH_ATTRIBUTES = ("x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2", "stroke-width")
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;",
                           "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"})
 
@@ -52,6 +55,7 @@ class _Rewriter:
         self.skipped: Counter[str] = Counter()
         # Markers sit on paths and not on circles: with markers about, a circle must stay one.
         self._may_replace_shapes = not survey.has_markers and not _SHAPE_SELECTORS.search(survey.css)
+        self._rem_px = _length(survey.root.get("font-size", "16")) or 16.0
         # A clip path may use shapes only; the normaliser trips over anything else.
         self._shape_ids = survey.shape_ids
         self._tags: list[str] = []
@@ -73,6 +77,7 @@ class _Rewriter:
         tag = local_name(name)
         parent = self._tags[-1] if self._tags else ""
         kept = _without_outside(attributes)
+        self._rewrite_units(kept)
         if tag in _DROPPED or (tag == "use" and parent == "clipPath"
                                and href_of(kept).removeprefix("#") not in self._shape_ids):
             self._omitted_depth = 1
@@ -125,6 +130,13 @@ class _Rewriter:
             self._text_is_blank = self._text_is_blank and not text.strip()
         elif self._in_style:
             self.out.append(text.translate(_ESCAPES))
+
+    def _rewrite_units(self, attributes: dict[str, str]) -> None:
+        for key in _LENGTH_ATTRIBUTES:
+            match = _UNKNOWN_UNIT.fullmatch(attributes.get(key, ""))
+            if match:
+                px = self._rem_px if match[2].lower() == "rem" else 96.0 / 101.6
+                attributes[key] = repr(float(match[1]) * px)
 
     def _rewrite_path(self, attributes: dict[str, str]) -> None:
         data = attributes.get("d", "")
