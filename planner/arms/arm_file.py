@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import tomllib
+from abc import abstractmethod
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Servo, Workspace
 from planner.errors import ArmFileError, UnknownArm
@@ -25,7 +26,14 @@ def _is_column_name(name: str) -> str:
     return name
 
 
+def _ascending(pulses_us: list[float]) -> list[float]:
+    if pulses_us[0] >= pulses_us[1]:
+        raise ValueError(f"{pulses_us[0]:g} is not below {pulses_us[1]:g}")
+    return pulses_us
+
+
 Name = Annotated[str, AfterValidator(_is_column_name)]
+PulseRange = Annotated[list[Positive], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
 
 
 class _Section(BaseModel):
@@ -35,7 +43,7 @@ class _Section(BaseModel):
 class _ServoSection(_Section):
     pulse_at_zero_us: Number
     us_per_deg: Number
-    pulse_range_us: Annotated[list[Positive], Field(min_length=2, max_length=2)]
+    pulse_range_us: PulseRange
     resolution_us: NotNegative = 1.0
     dead_band_us: NotNegative = 0.0
     backlash_deg: NotNegative = 0.0
@@ -49,6 +57,18 @@ class _JointBase(_Section):
     alpha_deg: Number = 0.0
     servo: _ServoSection | None = None
 
+    @property
+    @abstractmethod
+    def limits(self) -> tuple[float, float]:
+        """Lower and upper, in the unit of the file."""
+
+    @model_validator(mode="after")
+    def _limits_are_ordered(self) -> Self:
+        minimum, maximum = self.limits
+        if minimum >= maximum:
+            raise ValueError(f"the lower limit {minimum:g} is not below the upper limit {maximum:g}")
+        return self
+
 
 class _RevoluteSection(_JointBase):
     kind: Literal["revolute"]
@@ -58,6 +78,10 @@ class _RevoluteSection(_JointBase):
     max_acceleration_deg_s2: Positive
     max_jerk_deg_s3: Positive
 
+    @property
+    def limits(self) -> tuple[float, float]:
+        return self.min_deg, self.max_deg
+
 
 class _PrismaticSection(_JointBase):
     kind: Literal["prismatic"]
@@ -66,6 +90,10 @@ class _PrismaticSection(_JointBase):
     max_velocity_mm_s: Positive
     max_acceleration_mm_s2: Positive
     max_jerk_mm_s3: Positive
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        return self.min_mm, self.max_mm
 
 
 class _CouplingSection(_Section):
@@ -79,6 +107,14 @@ class _PenSection(_Section):
     tool_axis: Annotated[list[Number], Field(min_length=3, max_length=3)] = Field(default=[1.0, 0.0, 0.0])
     lift_mm: Positive
     clearance_mm: Positive = 1.0
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        if self.clearance_mm > self.lift_mm:
+            raise ValueError(f"clearance_mm {self.clearance_mm:g} is above lift_mm {self.lift_mm:g}")
+        if self.hold == "tool_axis" and math.hypot(*self.tool_axis) < 1e-9:
+            raise ValueError("tool_axis has no direction")
+        return self
 
 
 class _WorkspaceSection(_Section):
@@ -129,6 +165,8 @@ def read_arm_file(path: Path) -> Arm:
         raise ArmFileError(str(path), [f"cannot be read: {error.strerror}"]) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ArmFileError(str(path), [f"is not TOML: {error}"]) from error
+    except RecursionError as error:
+        raise ArmFileError(str(path), ["is not an arm: its values are nested too deeply"]) from error
     try:
         section = _ArmSection.model_validate(content)
     except ValidationError as error:
@@ -147,30 +185,19 @@ def _fault(detail: Any) -> str:
             continue
         key += f"[{part}]" if isinstance(part, int) else (f".{part}" if key else str(part))
     message = {"extra_forbidden": "unknown key", "missing": "missing"}.get(detail["type"], detail["msg"])
-    value = "" if detail["type"] in ("missing", "union_tag_not_found") else f" (value: {detail['input']!r:.60})"
-    return f"{key}: {message}{value}"
-
-
-def _limits(joint: _RevoluteSection | _PrismaticSection) -> tuple[float, float]:
-    if isinstance(joint, _RevoluteSection):
-        return joint.min_deg, joint.max_deg
-    return joint.min_mm, joint.max_mm
+    message = message.removeprefix("Value error, ")
+    # A whole section says less than what is wrong with it.
+    is_section = isinstance(detail["input"], dict | BaseModel)
+    return f"{key}: {message}" + ("" if is_section else f" (value: {detail['input']!r:.60})")
 
 
 def _contradictions(section: _ArmSection) -> list[str]:
-    """Faults that only show when keys are seen together."""
+    """Faults that only show when sections are seen together."""
     faults = []
     names = [joint.name for joint in section.joints]
     for index, joint in enumerate(section.joints):
         if names.index(joint.name) != index:
             faults.append(f"joints[{index}].name: '{joint.name}' is used twice")
-        minimum, maximum = _limits(joint)
-        if minimum >= maximum:
-            faults.append(f"joints[{index}]: the lower limit {minimum:g} is not below the upper limit {maximum:g}")
-        if joint.servo is not None:
-            low, high = joint.servo.pulse_range_us
-            if low >= high:
-                faults.append(f"joints[{index}].servo.pulse_range_us: {low:g} is not below {high:g}")
     driven = [coupling.joint for coupling in section.coupling]
     for index, coupling in enumerate(section.coupling):
         key = f"coupling[{index}]"
@@ -181,16 +208,10 @@ def _contradictions(section: _ArmSection) -> list[str]:
                 faults.append(f"{key}: joint '{name}' is prismatic; couplings hold between revolute joints")
         if driven.index(coupling.joint) != index:
             faults.append(f"{key}.joint: '{coupling.joint}' is driven by two couplings")
-        for name in coupling.coefficients:
-            if name in driven:
-                faults.append(f"{key}.coefficients: '{name}' is itself driven by a coupling")
-    pen = section.pen
-    if pen.hold == "coupling" and not section.coupling:
+        faults += [f"{key}.coefficients: '{name}' is itself driven by a coupling"
+                   for name in coupling.coefficients if name in driven]
+    if section.pen.hold == "coupling" and not section.coupling:
         faults.append("pen.hold: 'coupling' needs at least one [[coupling]]")
-    if pen.clearance_mm > pen.lift_mm:
-        faults.append(f"pen.clearance_mm: {pen.clearance_mm:g} is above pen.lift_mm {pen.lift_mm:g}")
-    if pen.hold == "tool_axis" and math.hypot(*pen.tool_axis) < 1e-9:
-        faults.append("pen.tool_axis: has no direction")
     return faults
 
 

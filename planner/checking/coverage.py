@@ -114,7 +114,8 @@ def _missing(wanted: DenseLines, wanted_lines: Sequence[FloatArray], pen_lines: 
         missing_mm = float(wanted.length_at_points_mm()[distance > limit].sum())
         taps = np.array([len(line) == 1 for line in wanted_lines])
         missed = int(taps[np.searchsorted(ends, wanted.source[distance > limit], side="right")].sum())
-        remark += f"; {missing_mm:.2f} mm of line are missing" + (f" and {missed} tap{'s' if missed > 1 else ''}" if missed else "")
+        remark += f"; {missing_mm:.2f} mm of line are missing"
+        remark += f" and {missed} tap{'' if missed == 1 else 's'}" if missed else ""
     x, y = wanted.points_mm[index].tolist()
     place = Place(tip_mm=(x, y), svg_user=_user(wanted.points_mm[index], user_to_arm))
     return Finding("nothing missing", worst <= limit, worst, limit, "mm", place, remark)

@@ -60,7 +60,7 @@ def test_figures_are_those_of_the_motion() -> None:
     assert highest.worst == pytest.approx(LIFT_MM)
     (extra,) = [finding for finding in verdict.findings if finding.check == "nothing extra"]
     assert extra.worst is not None
-    assert extra.worst < 1e-9
+    assert extra.worst < 1e-4  # the cubic at the corner
 
 
 def changed(**values: object) -> Trajectory:

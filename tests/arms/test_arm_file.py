@@ -1,0 +1,250 @@
+"""Arm files: every fault at once with key and value, units converted, names found; and arms told as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from planner.arms.arm import Arm, JointKind, PenHold
+from planner.arms.arm_file import DEFAULT_ARM, arms_folder, known_arms, load_arm, read_arm_file
+from planner.arms.description import arm_description
+from planner.errors import ArmFileError, UnknownArm
+
+ARM = """\
+name = "mixed"
+source = "made for tests"
+
+[pen]
+hold = "coupling"
+tool_axis = [0.0, 0.0, -2.0]
+lift_mm = 4.0
+
+[workspace]
+inner_radius_mm = 20.0
+
+[[joints]]
+name = "waist"
+kind = "revolute"
+d_mm = 40.0
+alpha_deg = 90.0
+min_deg = -90.0
+max_deg = 90
+max_velocity_deg_s = 360.0
+max_acceleration_deg_s2 = 1800.0
+max_jerk_deg_s3 = 36000.0
+servo = { pulse_at_zero_us = 1500.0, us_per_deg = -10.0, pulse_range_us = [600.0, 2400.0], backlash_deg = 1.0 }
+
+[[joints]]
+name = "reach"
+kind = "prismatic"
+theta_deg = 30.0
+min_mm = 10.0
+max_mm = 80.0
+max_velocity_mm_s = 100.0
+max_acceleration_mm_s2 = 1000.0
+max_jerk_mm_s3 = 20000.0
+
+[[joints]]
+name = "wrist"
+kind = "revolute"
+a_mm = 25.0
+min_deg = -100.0
+max_deg = 100.0
+max_velocity_deg_s = 360.0
+max_acceleration_deg_s2 = 1800.0
+max_jerk_deg_s3 = 36000.0
+
+[[coupling]]
+joint = "wrist"
+constant_deg = -90.0
+coefficients = { waist = -0.5 }
+"""
+
+Reader = Callable[..., Arm]
+
+
+@pytest.fixture
+def read(tmp_path: Path) -> Reader:
+    def read(*changes: tuple[str, str]) -> Arm:
+        text = ARM
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new)
+        file = tmp_path / "mixed.toml"
+        file.write_text(text, encoding="utf-8")
+        return read_arm_file(file)
+    return read
+
+
+def test_units_are_converted(read: Reader) -> None:
+    arm = read()
+    waist, reach, wrist = arm.joints
+    assert (waist.kind, reach.kind) == (JointKind.REVOLUTE, JointKind.PRISMATIC)
+    assert (waist.minimum, waist.maximum, waist.alpha_rad) == pytest.approx((-math.pi / 2, math.pi / 2, math.pi / 2))
+    assert (waist.max_velocity, waist.max_acceleration, waist.max_jerk) == pytest.approx(
+        (2 * math.pi, 10 * math.pi, 200 * math.pi))
+    assert (reach.minimum, reach.maximum, reach.max_velocity, reach.max_acceleration, reach.max_jerk) == (
+        10, 80, 100, 1000, 20000)
+    assert reach.theta_rad == pytest.approx(math.pi / 6)
+    assert (waist.d_mm, wrist.a_mm, wrist.d_mm) == (40, 25, 0)
+    assert arm.column_names == ("waist_deg", "reach_mm", "wrist_deg")
+    assert arm.couplings[0].joint == 2
+    assert arm.couplings[0].constant_rad == pytest.approx(-math.pi / 2)
+    assert arm.couplings[0].coefficients == ((0, -0.5),)
+
+
+def test_what_is_left_out_has_its_documented_value(read: Reader) -> None:
+    arm = read()
+    assert (arm.pen.clearance_mm, arm.pen.hold, arm.pen.tool_axis) == (1.0, PenHold.COUPLING, (0.0, 0.0, -1.0))
+    servo = arm.joints[0].servo
+    assert servo is not None
+    assert (servo.resolution_us, servo.dead_band_us, servo.backlash_deg, servo.us_per_deg) == (1, 0, 1, -10)
+    assert arm.joints[1].servo is None
+
+
+def test_couplings_complete_a_posture(read: Reader) -> None:
+    arm = read()
+    assert arm.free_joints == (0, 1)
+    complete = arm.to_file_units(arm.complete(arm.from_file_units([40.0, 30.0, 0.0])[:2]))
+    assert complete == pytest.approx([40.0, 30.0, -110.0])
+
+
+FAULTS = {
+    "unknown key": (("lift_mm = 4.0", "lift_mm = 4.0\nlift_cm = 1"), ("pen.lift_cm: unknown key (value: 1)",)),
+    "unknown key of a joint": (("d_mm = 40.0", "d_mm = 40.0\nmass = 2"), ("joints[0].mass: unknown key (value: 2)",)),
+    "missing key": (("lift_mm = 4.0", ""), ("pen.lift_mm: missing",)),
+    "missing limit": (("max_jerk_mm_s3 = 20000.0", ""), ("joints[1].max_jerk_mm_s3: missing",)),
+    "limits of the other kind": (("min_mm = 10.0", "min_deg = 10.0"),
+                                 ("joints[1].min_mm: missing", "joints[1].min_deg: unknown key (value: 10.0)")),
+    "wrong type": (("lift_mm = 4.0", 'lift_mm = "4"'), ("pen.lift_mm:", "(value: '4')")),
+    "true is no number": (("lift_mm = 4.0", "lift_mm = true"), ("pen.lift_mm:", "(value: True)")),
+    "not finite": (("a_mm = 25.0", "a_mm = inf"), ("joints[2].a_mm:", "(value: inf)")),
+    "no number": (("a_mm = 25.0", "a_mm = nan"), ("joints[2].a_mm:", "(value: nan)")),
+    "zero speed": (("max_velocity_mm_s = 100.0", "max_velocity_mm_s = 0"), ("joints[1].max_velocity_mm_s:", "0")),
+    "negative radius": (("inner_radius_mm = 20.0", "inner_radius_mm = -1.0"), ("workspace.inner_radius_mm:", "-1.0")),
+    "unknown kind": (('kind = "prismatic"', 'kind = "sliding"'), ("joints[1]", "'sliding'")),
+    "no kind": (('kind = "prismatic"', ""), ("joints[1]", "kind")),
+    "unknown hold": (('hold = "coupling"', 'hold = "glue"'), ("pen.hold:", "(value: 'glue')")),
+    "name with a comma": (('name = "waist"', 'name = "waist,1"'), ("joints[0].name:", "(value: 'waist,1')")),
+    "limits swapped": (("min_mm = 10.0", "min_mm = 90.0"), ("joints[1]", "lower limit 90", "upper limit 80")),
+    "name twice": (('name = "reach"', 'name = "waist"'), ("joints[1].name: 'waist' is used twice",)),
+    "pulses swapped": (("[600.0, 2400.0]", "[2400.0, 600.0]"), ("joints[0].servo.pulse_range_us: 2400", "600")),
+    "three pulses": (("[600.0, 2400.0]", "[600.0, 900.0, 2400.0]"), ("joints[0].servo.pulse_range_us:",)),
+    "coupled to nothing": (("{ waist = -0.5 }", "{ hips = -0.5 }"), ("coupling[0]: there is no joint 'hips'", "waist")),
+    "couples nothing": (('joint = "wrist"', 'joint = "hand"'), ("coupling[0]: there is no joint 'hand'",)),
+    "coupled to a slide": (("{ waist = -0.5 }", "{ reach = -0.5 }"), ("coupling[0]: joint 'reach' is prismatic",)),
+    "coupled to itself": (("{ waist = -0.5 }", "{ wrist = -0.5 }"), ("'wrist' is itself driven",)),
+    "coupled twice": (
+        ("[[coupling]]", '[[coupling]]\njoint = "wrist"\nconstant_deg = 0.0\ncoefficients = {}\n\n[[coupling]]'),
+        ("coupling[1].joint: 'wrist' is driven by two couplings",)),
+    "clearance above the lift": (("lift_mm = 4.0", "lift_mm = 4.0\nclearance_mm = 6.0"),
+                                 ("pen: clearance_mm 6 is above lift_mm 4",)),
+    "an axis without direction": (('hold = "coupling"\ntool_axis = [0.0, 0.0, -2.0]',
+                                   'hold = "tool_axis"\ntool_axis = [0.0, 0.0, 0.0]'),
+                                  ("pen: tool_axis has no direction",)),
+    "an axis in the plane": (("[0.0, 0.0, -2.0]", "[0.0, 1.0]"), ("pen.tool_axis:",)),
+    "not TOML": (("[pen]", "[pen"), ("is not TOML",)),
+}
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+def test_a_fault_is_told_with_file_key_and_value(read: Reader, kind: str) -> None:
+    change, parts = FAULTS[kind]
+    with pytest.raises(ArmFileError) as caught:
+        read(change)
+    message = str(caught.value)
+    assert message.startswith(caught.value.source)
+    assert "mixed.toml" in message
+    assert "\n" not in message
+    for part in parts:
+        assert part in message
+    assert len(caught.value.faults) == (2 if kind == "limits of the other kind" else 1)
+
+
+def test_all_faults_are_told_at_once(read: Reader) -> None:
+    with pytest.raises(ArmFileError) as caught:
+        read(("lift_mm = 4.0", ""), ("a_mm = 25.0", "a_mm = nan"), ("d_mm = 40.0", "dd_mm = 40.0"),
+             ('kind = "prismatic"', 'kind = "sliding"'))
+    assert len(caught.value.faults) == 4
+    with pytest.raises(ArmFileError) as caught:
+        read(('name = "reach"', 'name = "waist"'), ("{ waist = -0.5 }", "{ hips = -0.5 }"))
+    assert len(caught.value.faults) == 2
+
+
+def test_faults_in_form_do_not_hide_faults_in_meaning(read: Reader) -> None:
+    """Within a section; what sections contradict each other in shows once each is right by itself."""
+    with pytest.raises(ArmFileError) as caught:
+        read(("lift_mm = 4.0", "lift_mm = 0.5"), ("min_mm = 10.0", "min_mm = 90.0"), ("a_mm = 25.0", "a_m = 0.025"),
+             ("[600.0, 2400.0]", "[2400.0, 600.0]"))
+    assert len(caught.value.faults) == 4
+
+
+def test_hold_by_coupling_needs_one(read: Reader) -> None:
+    with pytest.raises(ArmFileError, match=r"'coupling' needs at least one \[\[coupling\]\]"):
+        read((ARM[ARM.index("[[coupling]]"):], ""))
+
+
+def test_an_arm_has_joints(read: Reader) -> None:
+    joints = ARM[ARM.index("[[joints]]"):]
+    with pytest.raises(ArmFileError, match="joints: missing"):
+        read((joints, ""))
+
+
+@pytest.mark.parametrize("content", [b"", b"\xff\xfe", b"= 1", b"[" * 5000, b"a = " + b"[" * 5000, b"name = 1e400"])
+def test_any_other_file_is_refused(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "arm.toml").write_bytes(content)
+    with pytest.raises(ArmFileError):
+        read_arm_file(tmp_path / "arm.toml")
+
+
+def test_missing_file_and_folder_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "folder.toml").mkdir()
+    for name in ("none.toml", "folder.toml"):
+        with pytest.raises(ArmFileError, match="cannot be read"):
+            load_arm(str(tmp_path / name))
+
+
+@pytest.mark.parametrize("name", known_arms())
+def test_arms_that_come_along_are_found_by_name_from_any_folder(
+        name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    arm = load_arm(name)
+    assert arm.name == name
+    assert load_arm(str(arms_folder() / f"{name}.toml")).column_names == arm.column_names
+
+
+def test_the_default_arm_comes_along() -> None:
+    assert DEFAULT_ARM in known_arms()
+
+
+@pytest.mark.parametrize("name", ["no_arm", "", "../configs/drawing_arm", "drawing_arm.tom"])
+def test_an_unknown_name_lists_the_known_ones(name: str) -> None:
+    with pytest.raises(UnknownArm) as caught:
+        load_arm(name)
+    assert DEFAULT_ARM in str(caught.value)
+    assert caught.value.known == known_arms()
+
+
+def test_description_is_the_file_again(read: Reader) -> None:
+    assert json.loads(json.dumps(arm_description(read()))) == {
+        "name": "mixed",
+        "joints": [
+            {"name": "waist", "kind": "revolute", "unit": "deg", "min": -90, "max": 90, "max_velocity": 360,
+             "max_acceleration": 1800, "max_jerk": 36000},
+            {"name": "reach", "kind": "prismatic", "unit": "mm", "min": 10, "max": 80, "max_velocity": 100,
+             "max_acceleration": 1000, "max_jerk": 20000},
+            {"name": "wrist", "kind": "revolute", "unit": "deg", "min": -100, "max": 100, "max_velocity": 360,
+             "max_acceleration": 1800, "max_jerk": 36000},
+        ],
+        "dh": [
+            {"theta_deg": 0, "d_mm": 40, "a_mm": 0, "alpha_deg": 90},
+            {"theta_deg": 30, "d_mm": 0, "a_mm": 0, "alpha_deg": 0},
+            {"theta_deg": 0, "d_mm": 0, "a_mm": 25, "alpha_deg": 0},
+        ],
+        "coupling": [{"joint": "wrist", "constant_deg": -90, "coefficients": {"waist": -0.5}}],
+        "pen": {"lift_mm": 4, "clearance_mm": 1},
+    }
