@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -336,6 +336,21 @@ def test_arms_are_listed_and_described(capsys: pytest.CaptureFixture[str]) -> No
     assert "known arms: drawing_arm, drawing_arm_2022" in _one_line(capsys)
 
 
+def test_an_arm_that_reaches_no_paper_is_described_and_drawn_without(
+        sweep_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (ROOT / "configs" / "drawing_arm.toml").read_text()
+    high = sweep_csv.with_name("high.toml")
+    high.write_text(text.replace("d_mm = 50.0", "d_mm = 500.0", 1))
+    assert main(["arm", str(high)]) == 0
+    assert re.search(r"^canvas: none \(.+\)$", capsys.readouterr().out, re.MULTILINE)
+    assert main(["arm", str(high), "--json"]) == 0
+    described = json.loads(capsys.readouterr().out)
+    assert described["reach_mm"] is described["canvas"] is None
+    picture = sweep_csv.with_name("paper.png")
+    assert main(["plot", str(sweep_csv), "--kind", "drawing", "--arm", str(high), "-o", str(picture)]) == 0
+    assert picture.stat().st_size > 1000
+
+
 class _Terminal(io.StringIO):
     def isatty(self) -> bool:
         return True
@@ -385,6 +400,21 @@ def test_ctrl_c_lifts_the_pen_and_ends_with_130(tmp_path: Path, number: int) -> 
     assert err == ""
     assert out.startswith("stopped after ")
     assert "the pen rests 5.00 mm above the paper" in out
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="looks into /proc")
+def test_a_second_ctrl_c_stops_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "slow.csv"
+    trajectory = _sweep(60.0)
+    write_trajectory(replace(trajectory, rate_hz=1.0), path)  # a sample a second: the first one takes a while to act
+    process = _start("run", str(path))
+    _wait_until_playing(process)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=20)
+    assert (process.returncode, out, err) == (130, "", "plan: interrupted\n")
 
 
 def test_a_reader_that_goes_away_is_no_error() -> None:

@@ -40,31 +40,32 @@ def arm(arguments: list[str]) -> int:
         print_lines(_columns([(one.name, f"{one.n_joints} joints", one.source) for one in known]))
         return 0
     described = load_arm(options.arm)
-    description = arm_description(described) | _paper(described)
+    paper, obstacle = _paper(described)
+    description = arm_description(described) | paper
     if options.json:
         print_lines([json.dumps(description, indent=2)])
     else:
-        print_lines([f"{described.name}: {described.source}", "", *_table(description)])
+        print_lines([f"{described.name}: {described.source}", "", *_table(description, obstacle)])
     return 0
 
 
-def _paper(arm: Arm) -> dict[str, Any]:
-    """The keys `reach_mm` and `canvas`; both None for an arm that cannot draw."""
+def _paper(arm: Arm) -> tuple[dict[str, Any], str]:
+    """The keys `reach_mm` and `canvas`; for an arm that has none, None and what is in the way."""
     from planner.cli.workspace import paper_in_reach
 
     try:
         paper = paper_in_reach(arm)
-    except PlanError:
-        return {"reach_mm": None, "canvas": None}
+    except PlanError as error:
+        return {"reach_mm": None, "canvas": None}, str(error)
     low, high = paper.reach_mm
     return {
         "reach_mm": {"min": round(low, 3), "max": round(high, 3)},
         "canvas": {"width_mm": round(paper.width_mm, 3), "height_mm": round(paper.height_mm, 3),
                    "corners_arm_mm": paper.corners_arm_mm.round(3).tolist()},
-    }
+    }, ""
 
 
-def _table(arm: dict[str, Any]) -> list[str]:
+def _table(arm: dict[str, Any], obstacle: str) -> list[str]:
     rows = [("joint", "kind", "theta", "d", "a", "alpha", "min", "max", "velocity", "acceleration", "jerk", "unit")]
     for joint, dh in zip(arm["joints"], arm["dh"], strict=True):
         numbers = (dh["theta_deg"], dh["d_mm"], dh["a_mm"], dh["alpha_deg"], joint["min"], joint["max"],
@@ -80,8 +81,8 @@ def _table(arm: dict[str, Any]) -> list[str]:
     lines.append(f"pen: travels {_number(pen['lift_mm'])} mm above the paper, moves only straight up or down "
                  f"below {_number(pen['clearance_mm'])} mm")
     reach, canvas = arm["reach_mm"], arm["canvas"]
-    if reach is None or canvas is None:
-        lines.append("canvas: none (nowhere is the paper reached with the pen down and up, within limits)")
+    if obstacle:
+        lines.append(f"canvas: none ({obstacle})")
         return lines
     corners = ", ".join(f"({_number(x)}, {_number(y)})" for x, y in canvas["corners_arm_mm"])
     lines.append(f"reach: {_number(reach['min'])} to {_number(reach['max'])} mm from the base")

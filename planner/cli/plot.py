@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
-from planner.errors import UsageError
+from planner.errors import PlanError, UsageError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -68,6 +68,9 @@ def _paper(trajectory: Trajectory, arm: Arm, drawing: Path | None) -> Figure:
         raise UsageError(f"the trajectory moves {', '.join(trajectory.columns)}; "
                          f"arm '{arm.name}' has {', '.join(arm.column_names)}")
     tip_mm = chain_poses(arm, arm.from_file_units(trajectory.positions)).tip_mm.T
-    paper = paper_in_reach(arm)
-    return plot_drawing(trajectory, tip_mm, read_drawing(drawing) if drawing else None,
-                        paper.corners_arm_mm, paper.reach_mm)
+    wanted = read_drawing(drawing) if drawing else None
+    try:
+        paper = paper_in_reach(arm)
+    except PlanError:  # a trajectory from elsewhere can be shown all the same
+        return plot_drawing(trajectory, tip_mm, wanted)
+    return plot_drawing(trajectory, tip_mm, wanted, paper.corners_arm_mm, paper.reach_mm)
