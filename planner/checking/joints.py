@@ -7,10 +7,12 @@ limit cannot exceed it there; rounding adds 2^k r rate^k at most, and that alone
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from planner.arms.arm import Arm
-from planner.arrays import FloatArray
+from planner.arrays import FloatArray, IntArray
 from planner.checking.between import POINTS_PER_STEP, Interpolation, cubic_error, positions_between
 from planner.checking.verdict import Finding, Place
 from planner.trajectory import Trajectory
@@ -28,38 +30,47 @@ def rest_at_the_ends(trajectory: Trajectory, arm: Arm) -> list[Finding]:
         step = np.abs(trajectory.positions[sample] - trajectory.positions[other])
         joint = int(np.argmax(step / limit))
         findings.append(_joint_finding(
-            trajectory, arm, check, joint, float(step[joint]), float(limit[joint]), sample, "in the step beside it"))
+            trajectory, arm, check, joint, float(step[joint]), float(limit[joint]), sample,
+            remark="in the step beside it"))
     return findings
 
 
 def position_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
-    """Positions beyond their limits at samples (rounding allowed) and on the cubic between them (the
-    error of the interpolation allowed), a finding a joint: how far beyond, negative inside."""
+    """Positions at samples (rounding allowed) and on the cubic between them (the error of the interpolation
+    allowed as well): for each joint the position that is furthest towards a limit or beyond it."""
     low, high = arm.to_file_units(arm.minimum), arm.to_file_units(arm.maximum)
-    allowance = arm.to_file_units(cubic_error(arm.max_jerk, 1 / trajectory.rate_hz)) + ROUNDING
-    beyond = _beyond(trajectory.positions, low, high)
+    interpolation_error = arm.to_file_units(cubic_error(arm.max_jerk, 1 / trajectory.rate_hz))
+    blocks = positions_between(trajectory.positions, Interpolation.CUBIC)
     findings = []
-    at_sample = np.argmax(beyond, axis=0)
-    between, between_step = np.full(arm.n_joints, -np.inf), np.zeros(arm.n_joints, dtype=np.int64)
-    start = 0
-    for block in positions_between(trajectory.positions, Interpolation.CUBIC):
-        excess = _beyond(block, low, high)
-        place = np.argmax(excess, axis=0)
-        worst = np.take_along_axis(excess, place[np.newaxis], axis=0)[0]
-        further = worst > between
-        between[further] = worst[further]
-        between_step[further] = (start + place[further]) // POINTS_PER_STEP
-        start += len(block)
-    for joint in range(arm.n_joints):
-        sample = int(at_sample[joint])
-        findings.append(_joint_finding(
-            trajectory, arm, "position", joint, float(beyond[sample, joint]), ROUNDING, sample,
-            f"beyond its limits {low[joint]:g} and {high[joint]:g}"))
-        if beyond[sample, joint] <= ROUNDING and between[joint] > allowance[joint]:
-            findings.append(_joint_finding(
-                trajectory, arm, "position between samples", joint, float(between[joint]), float(allowance[joint]),
-                int(between_step[joint]), f"beyond its limits {low[joint]:g} and {high[joint]:g}"))
+    for check, (positions, samples), allowance in (
+        ("position", _outermost([trajectory.positions], 1, low, high), np.full(arm.n_joints, ROUNDING)),
+        ("position between samples", _outermost(blocks, POINTS_PER_STEP, low, high), ROUNDING + interpolation_error),
+    ):
+        excess = _beyond(positions, low, high)
+        limits = np.where(2 * positions > low + high, high, low)
+        findings += [
+            _joint_finding(trajectory, arm, check, joint, float(positions[joint]), float(limits[joint]),
+                           int(samples[joint]), bool(excess[joint] <= allowance[joint]),
+                           f"within {low[joint]:g} and {high[joint]:g}")
+            for joint in range(arm.n_joints)]
     return findings
+
+
+def _outermost(blocks: Iterable[FloatArray], points_per_sample: int, low: FloatArray,
+               high: FloatArray) -> tuple[FloatArray, IntArray]:
+    """(n_joints,) the position of each joint that is furthest out, and the sample at or before it."""
+    positions, points = np.zeros(len(low)), np.zeros(len(low), dtype=np.int64)
+    worst = np.full(len(low), -np.inf)
+    joints, start = np.arange(len(low)), 0
+    for block in blocks:
+        excess = _beyond(block, low, high)
+        row = np.argmax(excess, axis=0)
+        further = excess[row, joints] > worst
+        worst[further] = excess[row, joints][further]
+        positions[further] = block[row, joints][further]
+        points[further] = start + row[further]
+        start += len(block)
+    return positions, points // points_per_sample
 
 
 def _beyond(positions: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
@@ -81,7 +92,7 @@ def rate_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
             sample = int(np.argmax(derivative[:, joint]))
             findings.append(_joint_finding(
                 trajectory, arm, check, joint, float(derivative[sample, joint]), float(limit[joint]), sample,
-                "", "/s" + ("" if order == 1 else "²" if order == 2 else "³")))
+                per="/s" + ("" if order == 1 else "²" if order == 2 else "³")))
     return findings
 
 
@@ -100,8 +111,10 @@ def couplings(trajectory: Trajectory, arm: Arm) -> list[Finding]:
 
 
 def _joint_finding(trajectory: Trajectory, arm: Arm, check: str, joint: int, worst: float, limit: float, sample: int,
-                   remark: str = "", per: str = "") -> Finding:
+                   passed: bool | None = None, remark: str = "", per: str = "") -> Finding:
+    """A finding on a joint; passed, unless said otherwise, where worst is at most the limit."""
     stroke = int(trajectory.stroke[sample])
     place = Place(sample / trajectory.rate_hz, sample, trajectory.line(sample), arm.joints[joint].name,
                   stroke if stroke >= 0 else None)
-    return Finding(check, worst <= limit, worst, limit, arm.joints[joint].file_unit + per, place, remark)
+    return Finding(check, worst <= limit if passed is None else passed, worst, limit,
+                   arm.joints[joint].file_unit + per, place, remark)

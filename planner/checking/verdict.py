@@ -24,8 +24,6 @@ class Place:
 
     def __str__(self) -> str:
         parts = []
-        if self.joint is not None:
-            parts.append(f"joint {self.joint}")
         if self.stroke is not None:
             parts.append(f"stroke {self.stroke}")
         if self.time_s is not None:
@@ -44,7 +42,7 @@ class Finding:
     """One law and how the trajectory stands to it.
 
     check: the law's name. passed: always True for a note, which has no limit. worst, limit: the worst
-    figure and what it may be at most (at least, for a check that says so), in `unit`.
+    figure and the limit that it is held to, in `unit`.
     """
 
     check: str
@@ -58,12 +56,14 @@ class Finding:
 
     def __str__(self) -> str:
         mark = "note " if self.is_note else "ok   " if self.passed else "FAULT"
-        figure = ""
+        joint = "" if self.place is None or self.place.joint is None else f" of {self.place.joint}"
+        parts = []
         if self.worst is not None:
-            figure = f" {self.worst:.5g}" + ("" if self.limit is None else f" of {self.limit:.5g}") + f" {self.unit}"
-        remark = f" {self.remark}" if self.remark else ""
-        place = "" if self.place is None else f" ({self.place})"
-        return f"{mark} {self.check}:{figure.rstrip()}{remark}{place}"
+            worst = round(self.worst, 9) + 0.0  # no "-0"
+            parts.append(f"{worst:.5g}" + ("" if self.limit is None else f" of {self.limit:.5g}"))
+        parts += [self.unit, self.remark, "" if self.place is None else f"({self.place})"]
+        told = " ".join(filter(None, parts))
+        return f"{mark} {self.check}{joint}" + (f": {told}" if told else "")
 
 
 @dataclass(frozen=True, slots=True)

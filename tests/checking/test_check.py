@@ -11,7 +11,7 @@ import pytest
 
 from planner.arms.arm import Arm
 from planner.checking.check import check_trajectory
-from planner.checking.verdict import Finding, Verdict
+from planner.checking.verdict import Finding, Place, Verdict
 from planner.trajectory import TRAVELLING, Trajectory
 from tests.checking.rig import (
     AFFINE,
@@ -183,8 +183,9 @@ def test_a_limit_a_little_tighter_than_the_motion_is_broken(check: str, limit: s
     slack = max(slack, 4e-6 * RATE_HZ**3) if check == "jerk" else slack
     found = faults(trajectory, with_limit(gantry(), name, **{limit: reached - sign * slack}))
     assert check in found
-    # A tighter jerk also tightens what rest is; nothing else may follow.
-    assert set(found) <= {check, "starts at rest", "ends at rest"} if check == "jerk" else set(found) == {check}
+    # A tighter jerk also tightens what rest is, and what is beyond at a sample is so beside it; nothing else may follow.
+    assert set(found) <= {check, *{"jerk": ["starts at rest", "ends at rest"],
+                                   "position": ["position between samples"]}.get(check, [])}
     place = found[check].place
     assert place is not None
     assert place.joint == name
@@ -199,7 +200,8 @@ def test_a_turn_between_samples_is_seen() -> None:
     top = float(turn.max())
     verdict = check_trajectory(trajectory, with_limit(gantry(), "u", maximum=top))
     (found,) = [finding for finding in verdict.faults if finding.check == "position between samples"]
-    assert found.worst == pytest.approx(1250 / RATE_HZ**2 / 8)
+    assert found.worst == pytest.approx(top + 1250 / RATE_HZ**2 / 8)
+    assert found.limit == pytest.approx(top)
     assert found.place is not None
     assert found.place.sample == 14
 
@@ -254,3 +256,12 @@ def test_text_and_json_say_the_same() -> None:
     assert [one["check"] for one in values["findings"] if not one["passed"]] == [
         "tip on the paper while the pen is down"]
     assert Verdict(()).text() == "passed"
+
+
+def test_lines_read_well() -> None:
+    place = Place(1.25, 125, 134, "q2", 3, (10.0, 20.0, 0.0), (4.0, 5.0))
+    assert str(Finding("velocity", False, 401.0, 400.0, "deg/s", place)) == (
+        "FAULT velocity of q2: 401 of 400 deg/s (stroke 3, 1.250 s, line 134, tip at (10.00, 20.00, 0.00) mm, "
+        "in the drawing (4.00, 5.00))")
+    assert str(Finding("pen up at the first sample", True)) == "ok    pen up at the first sample"
+    assert str(Finding("highest tip", True, 5.0, unit="mm", is_note=True)) == "note  highest tip: 5 mm"
