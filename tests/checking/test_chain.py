@@ -129,6 +129,7 @@ def test_a_link_through_the_paper_is_found() -> None:
 def test_a_slide_below_its_limit_is_named() -> None:
     arm = with_limit(gantry(), "h", minimum=26.0)
     verdict = check_trajectory(resting(arm, [25.0, 0.0, 0.0]), arm)
-    (finding,) = verdict.faults
+    finding, between = verdict.faults
+    assert between.check == "position between samples"
     assert (finding.check, finding.worst, finding.unit) == ("position", 25.0, "mm")
     assert finding.limit == 26.0

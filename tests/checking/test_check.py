@@ -183,7 +183,7 @@ def test_a_limit_a_little_tighter_than_the_motion_is_broken(check: str, limit: s
     slack = max(slack, 4e-6 * RATE_HZ**3) if check == "jerk" else slack
     found = faults(trajectory, with_limit(gantry(), name, **{limit: reached - sign * slack}))
     assert check in found
-    # A tighter jerk also tightens what rest is, and what is beyond at a sample is so beside it; nothing else may follow.
+    # A tighter jerk also tightens what rest is, and what is beyond at a sample is so beside it: no more.
     assert set(found) <= {check, *{"jerk": ["starts at rest", "ends at rest"],
                                    "position": ["position between samples"]}.get(check, [])}
     place = found[check].place
