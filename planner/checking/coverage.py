@@ -19,7 +19,7 @@ FLATTENING_MM = 0.002
 """Chord error of the wanted lines, allowed beside the tolerance."""
 
 SPACING_MM = 0.02
-_MOST_POINTS = 4_000_000
+_MOST_POINTS = 2_000_000
 _LARGEST_DRAWING_MM = 10_000.0
 
 

@@ -9,6 +9,8 @@ from scipy.spatial import cKDTree
 
 from planner.arrays import BoolArray, FloatArray, IntArray
 
+NEAR_MM = 1.0
+_FEW = 25
 _POINTS_AT_ONCE = 100_000
 
 
@@ -35,13 +37,19 @@ class DenseLines:
         """(k,) distance of points (k, 2) to the lines; needs at least one point to measure to.
 
         Taken to the two pieces beside the nearest point. Another piece can be nearer by s^2 / 8 d at most,
-        s being the spacing of the points and d the distance, so figures err on the large side only.
+        s being the spacing of the points and d the distance, so figures err on the large side only. Beyond
+        NEAR_MM the nearest point is sought among few, and the figure can be too large by half their distance.
         """
         tree = cKDTree(self.points_mm)
+        is_first = np.concatenate(([True], ~self.joined[:-1]))
+        few = np.flatnonzero(is_first | ~self.joined | (np.arange(len(self.points_mm)) % _FEW == 0))
+        coarse = cKDTree(self.points_mm[few])
         distance = np.empty(len(points_mm))
         for start in range(0, len(points_mm), _POINTS_AT_ONCE):
             block = points_mm[start:start + _POINTS_AT_ONCE]
-            _, nearest = tree.query(block)
+            gap, nearest = tree.query(block, distance_upper_bound=NEAR_MM)
+            far = np.isinf(gap)  # a search for neighbours that are far away is slow in a large tree
+            nearest[far] = few[coarse.query(block[far])[1]]
             before = np.maximum(nearest - 1, 0)
             before = np.where(self.joined[before], before, nearest)
             after = np.where(self.joined[nearest], nearest + 1, nearest)

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planner.checking.polyline import dense_lines
+from planner.checking.polyline import NEAR_MM, dense_lines
 
 SPACING_MM = 0.02
 
@@ -29,7 +29,9 @@ def test_distances_are_those_of_brute_force(seed: int, n: int) -> None:
         wanted = np.minimum(wanted, np.linalg.norm(asked - begin - share[:, np.newaxis] * along, axis=1))
     measured = dense.distance_mm(asked)
     assert np.all(measured >= wanted - 1e-9)
-    assert np.all(measured <= np.hypot(wanted, SPACING_MM / 2) + 1e-9)
+    near = wanted < NEAR_MM - SPACING_MM
+    assert np.all(measured[near] <= np.hypot(wanted, SPACING_MM / 2)[near] + 1e-9)
+    assert np.all(measured <= wanted + 25 * SPACING_MM / 2 + 1e-9)
     gaps = np.linalg.norm(np.diff(dense.points_mm, axis=0), axis=1)[dense.joined[:-1]]
     assert np.all(gaps <= SPACING_MM * (1 + 1e-9))
     np.testing.assert_array_equal(np.unique(dense.source[~dense.joined]), np.flatnonzero(~joined))
