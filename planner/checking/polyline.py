@@ -47,7 +47,8 @@ class DenseLines:
         distance = np.empty(len(points_mm))
         for start in range(0, len(points_mm), _POINTS_AT_ONCE):
             block = points_mm[start:start + _POINTS_AT_ONCE]
-            gap, nearest = tree.query(block, distance_upper_bound=NEAR_MM)
+            gap, found = tree.query(block, distance_upper_bound=NEAR_MM)
+            nearest: IntArray = np.array(found, dtype=np.int64)
             far = np.isinf(gap)  # a search for neighbours that are far away is slow in a large tree
             nearest[far] = few[coarse.query(block[far])[1]]
             before = np.maximum(nearest - 1, 0)
