@@ -109,7 +109,7 @@ class Workspace:
 
 @dataclass(frozen=True, eq=False)
 class Arm:
-    """A checked arm. Joint arrays are in chain order, in rad or mm."""
+    """A checked arm. Joint arrays are in chain order, in rad or mm; closed_form names its family, if any."""
 
     name: str
     source: str
@@ -117,6 +117,7 @@ class Arm:
     couplings: tuple[Coupling, ...]
     pen: Pen
     workspace: Workspace
+    closed_form: str | None = None
 
     @property
     def n_joints(self) -> int:

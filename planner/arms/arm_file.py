@@ -125,6 +125,7 @@ class _WorkspaceSection(_Section):
 class _ArmSection(_Section):
     name: Name
     source: str
+    closed_form: Literal["drawing_arm"] | None = None
     pen: _PenSection
     workspace: _WorkspaceSection
     joints: Annotated[
@@ -250,4 +251,5 @@ def _arm(section: _ArmSection) -> Arm:
         couplings=couplings,
         pen=Pen(PenHold(section.pen.hold), (x, y, z), section.pen.lift_mm, section.pen.clearance_mm),
         workspace=Workspace(section.workspace.inner_radius_mm, section.workspace.min_tip_speed_mm_s),
+        closed_form=section.closed_form,
     )

@@ -101,15 +101,19 @@ class Kinematics:
 
     @cached_property
     def _jacobian(self) -> MappedFunction:
-        """The geometric 6 x n Jacobian of all joints, each taken as independent."""
         joints = casadi.SX.sym("q", self.arm.n_joints)
+        return MappedFunction("jacobian", [joints], [self.symbolic_jacobian(joints)[2]])
+
+    def symbolic_jacobian(self, joints: casadi.SX) -> tuple[casadi.SX, casadi.SX, casadi.SX]:
+        """Tip, tool axis and the geometric 6 x n Jacobian at symbolic joints, each taken as independent."""
         frames, _ = _chain(self.arm, joints)
-        linear = casadi.jacobian(frames[-1][:3, 3], joints)
+        tip = frames[-1][:3, 3]
         axes = [casadi.SX([0, 0, 1]), *[frame[:3, 2] for frame in frames[:-1]]]
         angular = casadi.horzcat(*[
             axis if joint.kind is JointKind.REVOLUTE else casadi.SX.zeros(3)
             for axis, joint in zip(axes, self.arm.joints, strict=True)])
-        return MappedFunction("jacobian", [joints], [casadi.vertcat(linear, angular)])
+        pointing = frames[-1][:3, :3] @ casadi.DM(self.arm.pen.tool_axis)
+        return tip, pointing, casadi.vertcat(casadi.jacobian(tip, joints), angular)
 
     def pose(self, free: FloatArray) -> FloatArray:
         """T_base_pen (n, 4, 4), mm, of postures (n, n_free)."""

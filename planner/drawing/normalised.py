@@ -10,6 +10,7 @@ from xml.parsers import expat
 
 import numpy as np
 
+from planner.affine import compose
 from planner.arrays import BoolArray, FloatArray, frozen
 from planner.drawing.drawing import Outline
 from planner.drawing.rewrite import PLACEHOLDERS
@@ -39,13 +40,6 @@ def read_normalised(data: bytes) -> NormalisedSvg:
     reader = _Reader()
     reader.parser.Parse(data, True)
     return NormalisedSvg(tuple(reader.outlines), reader.root, reader.skipped)
-
-
-def compose(outer: FloatArray, inner: FloatArray) -> FloatArray:
-    """The affine (2, 3) that applies `inner` first and `outer` then."""
-    product = outer[:, :2] @ inner
-    product[:, 2] += outer[:, 2]
-    return product
 
 
 @dataclass(slots=True)

@@ -7,13 +7,14 @@ With b = (dsigma/dt)^2 as a function of sigma and ' = d/dsigma, a joint path q(s
     jerk          (q''' b + 3/2 q'' b' + 1/2 q' b'') sqrt(b)
 
 (Verscheure et al. 2009 for the first two; the third is not convex). Each b is a quadratic B-spline over the
-cells of its path, so acceleration is continuous and jerk is bounded. Limits hold at both ends of every cell.
+cells of its path, so acceleration is continuous and jerk is bounded. Velocity and acceleration limits are
+imposed at the ends of every cell and jerk limits at its ends and middle.
 
 The problem is solved by a primal-dual interior-point method whose Newton systems are banded, so work is
 linear in the number of cells, and all paths are solved at once. Divided by sqrt(b), the jerk limit is a
 linear expression against J / sqrt(b); the curvature of that right-hand side is used where it leaves the
 Newton system positive definite and dropped elsewhere (sequential convex programming). Every iterate is
-strictly feasible: what is returned keeps the limits at the cell ends even if the iteration stops early.
+strictly feasible: what is returned keeps the limits there even if the iteration stops early.
 
 Arrays have the cells on their last axis, so that sums over joints and ends run along memory.
 """
@@ -27,8 +28,13 @@ from scipy.linalg import solveh_banded
 
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.ragged import starts_of, within
+from planner.spline import weights
 
 _MOST_ITERATIONS = 80
+FRACTIONS = np.array([0.0, 0.5, 1.0])
+"""Points of each cell at which the jerk limits are imposed; the others are at its left end."""
+
+_SIMPSON = np.array([1.0, 4.0, 1.0]) / 6
 _GAP = 1e-3
 """Iteration stops where the barrier can still save less than this share of a path's time."""
 _BOUNDARY = 0.95
@@ -43,7 +49,7 @@ class TimingProblem:
     """Paths to be timed, laid end to end, each at rest at both ends (q' = q'' = 0 there).
 
     n_cells: (n_paths,); rate_cap: (total cells,) cap on dsigma/dt at the left end of every cell; the others:
-    (2, n_joints, total cells) derivatives of the joints by sigma at both ends of every cell, divided by
+    (3, n_joints, total cells) derivatives of the joints by sigma at FRACTIONS of every cell, divided by
     the limit that the name says.
     """
 
@@ -58,7 +64,7 @@ class TimingProblem:
     @staticmethod
     def of(n_cells: IntArray, derivatives: tuple[FloatArray, FloatArray, FloatArray],
            limits: tuple[FloatArray, FloatArray, FloatArray], rate_cap: FloatArray) -> TimingProblem:
-        """derivatives: q', q'', q''' (total cells, 2, n_joints); limits: velocity, acceleration, jerk
+        """derivatives: q', q'', q''' (total cells, 3, n_joints) at FRACTIONS; limits: velocity, acceleration, jerk
         (n_joints,); rate_cap: (total cells,), the pen's own, inf where it has none."""
         first, second, third = (np.ascontiguousarray(np.moveaxis(derivative, 0, 2)) for derivative in derivatives)
         velocity, acceleration, jerk = (limit[:, None] for limit in limits)
@@ -114,13 +120,13 @@ class _Solver:
         self.path_of_cell = np.repeat(np.arange(self.n_paths), n_cells)
         self.path_of_coefficient = np.repeat(np.arange(self.n_paths), count)
         self.first_cell = starts_of(n_cells)[:-1]
-        self.n_limits = n_cells * (1 + 6 * problem.first_by_jerk.shape[1])
+        self.n_limits = n_cells * (1 + 8 * problem.first_by_jerk.shape[1])
         self.cap = problem.rate_cap ** 2
         p = problem
-        self.acceleration = _left(p.second_by_acceleration[:1], 0.5 * p.first_by_acceleration[:1], 0.0)
-        self.jerk = np.concatenate((
-            _left(p.third_by_jerk[:1], 1.5 * p.second_by_jerk[:1], 0.5 * p.first_by_jerk[:1]),
-            _right(p.third_by_jerk[1:], 1.5 * p.second_by_jerk[1:], 0.5 * p.first_by_jerk[1:])), axis=1)
+        self.acceleration = _form(0.0, p.second_by_acceleration[0], 0.5 * p.first_by_acceleration[0], 0.0)
+        self.jerk = np.stack([
+            _form(fraction, p.third_by_jerk[k], 1.5 * p.second_by_jerk[k], 0.5 * p.first_by_jerk[k])
+            for k, fraction in enumerate(FRACTIONS)], axis=1)
 
     def start(self) -> FloatArray:
         """A feasible b: the lower envelope of what each cell allows alone, of limited slope in log b, scaled
@@ -140,16 +146,16 @@ class _Solver:
         fall = np.minimum.accumulate((level + _START_SLOPE * apart)[::-1])[::-1] - _START_SLOPE * apart
         b = np.exp(np.minimum(rise, fall))
         value, acceleration, jerk = self.values(b)
-        worst = np.maximum(value[0] / self.cap, np.abs(acceleration).max(axis=(0, 1)))
+        worst = np.maximum(value[0] / self.cap, np.abs(acceleration).max(axis=0))
         worst = np.maximum(worst, (np.abs(jerk).max(axis=1) * np.sqrt(value)).max(axis=0) ** (2 / 3))
         scaled: FloatArray = b * (0.7 / np.maximum.reduceat(worst, self.first_cell))[self.path_of_coefficient]
         return scaled
 
     def values(self, b: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """b at cell ends (2, cells), relative acceleration at left ends (1, n_joints, cells) and relative
-        jerk / sqrt(b) at both ends (2, n_joints, cells)."""
+        """b at the points of each cell (3, cells), relative acceleration at its left end (n_joints, cells)
+        and relative jerk / sqrt(b) at its points (3, n_joints, cells)."""
         c0, c1, c2 = b[self.cell], b[self.cell + 1], b[self.cell + 2]
-        value = np.stack((0.5 * (c0 + c1), 0.5 * (c1 + c2)))
+        value = np.stack([form[0] * c0 + form[1] * c1 + form[2] * c2 for form in _VALUE_FORMS])
         return (value, self.acceleration[0] * c0 + self.acceleration[1] * c1,
                 self.jerk[0] * c0 + self.jerk[1] * c1 + self.jerk[2] * c2)
 
@@ -172,7 +178,7 @@ class _Solver:
         return minima
 
     def times_s(self, value: FloatArray) -> FloatArray:
-        return self.total(0.5 / np.sqrt(value))
+        return self.total(_SIMPSON[:, None] / np.sqrt(value))
 
     def step(self, state: _State, alive: BoolArray) -> _State:
         """One primal-dual Newton step; each path takes the largest step that keeps it feasible."""
@@ -180,15 +186,15 @@ class _Solver:
         value = self.values(state.b)[0]
         multipliers, slacks = state.multipliers, state.slacks
         pushes = [mu / slack for slack in slacks]  # the multipliers that the barrier wants
-        weights = [multiplier / slack for multiplier, slack in zip(multipliers, slacks, strict=True)]
+        stiffness = [multiplier / slack for multiplier, slack in zip(multipliers, slacks, strict=True)]
         root = value ** -1.5
-        direction = self.direction(value, root, multipliers, pushes, weights) * alive[self.path_of_coefficient]
+        direction = self.direction(value, root, multipliers, pushes, stiffness) * alive[self.path_of_coefficient]
 
         d_value, d_acceleration, d_jerk = self.values(direction)
         d_room = (-0.5 * root * d_value)[:, None]
         d_slacks = [-d_value[0] / self.cap, -d_acceleration, d_acceleration, d_room - d_jerk, d_room + d_jerk]
         d_multipliers = [push - multiplier - weight * d for push, multiplier, weight, d
-                         in zip(pushes, multipliers, weights, d_slacks, strict=True)]
+                         in zip(pushes, multipliers, stiffness, d_slacks, strict=True)]
         dual = np.ones(self.n_paths)
         for multiplier, d in zip(multipliers, d_multipliers, strict=True):
             dual = np.minimum(dual, _BOUNDARY * self.until_zero(multiplier, d))
@@ -215,34 +221,34 @@ class _Solver:
         return _State.of(self, b, values[0], moved, updated)
 
     def direction(self, value: FloatArray, root: FloatArray, multipliers: list[FloatArray],
-                  pushes: list[FloatArray], weights: list[FloatArray]) -> FloatArray:
-        """Newton's direction for time - mu * sum of log(slack), with the weights multiplier / slack."""
-        jerk_weights = weights[3] + weights[4]
-        by_value = -0.25 * root + 0.5 * root * (pushes[3] + pushes[4]).sum(axis=1)
+                  pushes: list[FloatArray], stiffness: list[FloatArray]) -> FloatArray:
+        """Newton's direction for time - mu * sum of log(slack), with stiffness = multiplier / slack."""
+        jerk_stiffness = stiffness[3] + stiffness[4]
+        by_value = -0.5 * _SIMPSON[:, None] * root + 0.5 * root * (pushes[3] + pushes[4]).sum(axis=1)
         by_value[0] += pushes[0] / self.cap
         # Second derivative of the time less that of the jerk limits' J / sqrt(b), where that is positive.
-        second = np.maximum(0.375 - 0.75 * (multipliers[3] + multipliers[4]).sum(axis=1), 1e-9) * root / value
-        second += 0.25 * root ** 2 * jerk_weights.sum(axis=1)
-        second[0] += weights[0] / self.cap ** 2
-        crossed = 0.5 * root * np.einsum("fejk,ejk->fek", self.jerk, weights[3] - weights[4])
+        second = 0.75 * np.maximum(_SIMPSON[:, None] - (multipliers[3] + multipliers[4]).sum(axis=1), 1e-9) * root / value
+        second += 0.25 * root ** 2 * jerk_stiffness.sum(axis=1)
+        second[0] += stiffness[0] / self.cap ** 2
+        crossed = 0.5 * root * np.einsum("fejk,ejk->fek", self.jerk, stiffness[3] - stiffness[4])
         signed = (pushes[1] - pushes[2], pushes[3] - pushes[4])
         gradient = np.zeros(self.n_coefficients)
         for k in range(3):
             ends = _VALUE_FORMS[:, k] @ by_value
             ends += np.einsum("ejk,ejk->k", self.jerk[k], signed[1])
             if k < 2:
-                ends += np.einsum("ejk,ejk->k", self.acceleration[k], signed[0])
+                ends += np.einsum("jk,jk->k", self.acceleration[k], signed[0])
             gradient[self.cell + k] += ends
         band = np.zeros((3, self.n_coefficients))
-        acceleration_weights = weights[1] + weights[2]
+        acceleration_stiffness = stiffness[1] + stiffness[2]
         for row in range(3):
             for column in range(row + 1):
                 entry = (_VALUE_FORMS[:, row] * _VALUE_FORMS[:, column]) @ second
                 entry += _VALUE_FORMS[:, row] @ crossed[column] + _VALUE_FORMS[:, column] @ crossed[row]
-                entry += np.einsum("ejk,ejk,ejk->k", self.jerk[row], self.jerk[column], jerk_weights)
+                entry += np.einsum("ejk,ejk,ejk->k", self.jerk[row], self.jerk[column], jerk_stiffness)
                 if row < 2:
-                    entry += np.einsum("ejk,ejk,ejk->k", self.acceleration[row], self.acceleration[column],
-                                       acceleration_weights)
+                    entry += np.einsum("jk,jk,jk->k", self.acceleration[row], self.acceleration[column],
+                                       acceleration_stiffness)
                 band[row - column, self.cell + column] += entry
         scale = 1.0 / np.sqrt(band[0])  # coefficients differ by orders of magnitude between corners and straights
         band *= scale
@@ -289,17 +295,12 @@ class _State:
                       [multiplier[..., cells] for multiplier in self.multipliers], self.time_s[paths], self.gap[paths])
 
 
-_VALUE_FORMS = np.array([[0.5, 0.5, 0.0], [0.0, 0.5, 0.5]])
-"""b at the left and the right end of a cell, in terms of its three coefficients."""
+_VALUE_FORMS = weights(2, FRACTIONS)
+"""(3 points, 3 coefficients) b at the points of a cell."""
 
 
-def _left(on_value: FloatArray, on_slope: FloatArray, on_bend: FloatArray | float) -> FloatArray:
-    """(3, 1, n_joints, cells) the form on_value b + on_slope b' + on_bend b'' at the left end of each cell in
-    terms of its coefficients: b = (c0 + c1) / 2, b' = c1 - c0, b'' = c0 - 2 c1 + c2."""
-    return np.stack((on_value / 2 - on_slope + on_bend, on_value / 2 + on_slope - 2 * on_bend,
-                     np.zeros_like(on_value) + on_bend))
-
-
-def _right(on_value: FloatArray, on_slope: FloatArray, on_bend: FloatArray) -> FloatArray:
-    """Likewise at the right end, where b = (c1 + c2) / 2 and b' = c2 - c1."""
-    return np.stack((on_bend, on_value / 2 - on_slope - 2 * on_bend, on_value / 2 + on_slope + on_bend))
+def _form(fraction: float, on_value: FloatArray, on_slope: FloatArray, on_bend: FloatArray | float) -> FloatArray:
+    """(3, n_joints, cells) the form on_value b + on_slope b' + on_bend b'' at a fraction of each cell, in
+    terms of the cell's coefficients."""
+    value, slope, bend = (weights(2, np.array([fraction]), derivative)[0] for derivative in range(3))
+    return np.stack([value[k] * on_value + slope[k] * on_slope + bend[k] * on_bend for k in range(3)])

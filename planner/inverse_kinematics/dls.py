@@ -1,0 +1,119 @@
+"""The documented damped least squares: one 6 x n step at a time, couplings overwritten after each.
+
+`dq = J^T (J J^T + lambda^2 I)^-1 e` with the geometric Jacobian J of all joints and e = [target - tip; 0],
+`q <- q + dq`, then every driven joint is set from its coupling (documents on the drawing arm, algorithm;
+Buss 2004). Lengths are in centimetres: lambda^2 = 50 weighs cm^2 against rad^2, and only so
+the documented iterations come out. Joint limits are not part of the method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi
+import numpy as np
+
+from planner.arms.arm import Arm, PenHold
+from planner.arms.kinematics import kinematics_of
+from planner.arrays import FloatArray
+from planner.inverse_kinematics.result import Solutions
+
+MM_PER_CM = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class DlsSettings:
+    """Damping lambda^2 in cm^2, and the tolerances in the plane of the paper and across it."""
+
+    lambda_squared: float = 50.0
+    tolerance_xy_mm: float = 5.0
+    tolerance_z_mm: float = 1.0
+    most_iterations: int = 2000
+
+
+DOCUMENTED = DlsSettings()
+FOR_DRAWING = DlsSettings(tolerance_xy_mm=0.01, tolerance_z_mm=0.01)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class DlsStep:
+    """One iteration: joints (n_joints,) before it, tip and error in mm, and the step to be added."""
+
+    joints: FloatArray
+    tip_mm: FloatArray
+    error_mm: FloatArray
+    step: FloatArray
+
+
+def iterate(arm: Arm, start: FloatArray, target_mm: FloatArray, lambda_squared: float) -> Iterator[DlsStep]:
+    """Iterations without end from joints (n_joints,) towards a tip (3,): the caller decides when to stop."""
+    step = _dls_step(arm)
+    matrix, constant = arm.coupling_matrix
+    free = list(arm.free_joints)
+    joints = np.array(start, dtype=np.float64)
+    while True:
+        error, tip, change = step(joints, target_mm, lambda_squared)
+        yield DlsStep(joints, tip, error, change)
+        joints = matrix @ (joints + change)[free] + constant
+
+
+def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, settings: DlsSettings) -> Solutions:
+    """Targets (n, 3) one after the other, each started from the posture of the one before.
+
+    start: (n_joints,), which also holds the coupling.
+    """
+    n_targets = len(targets_mm)
+    postures = np.empty((n_targets, len(arm.free_joints)))
+    converged = np.zeros(n_targets, dtype=bool)
+    iterations = np.zeros(n_targets, dtype=np.int64)
+    error_mm = np.empty(n_targets)
+    joints = np.asarray(start)
+    for index, target in enumerate(targets_mm):
+        for count, state in enumerate(iterate(arm, joints, target, settings.lambda_squared)):
+            joints = state.joints
+            in_plane = float(np.hypot(*state.error_mm[:2]))
+            converged[index] = in_plane < settings.tolerance_xy_mm and abs(state.error_mm[2]) < settings.tolerance_z_mm
+            if converged[index] or count >= settings.most_iterations:
+                break
+        iterations[index] = count
+        error_mm[index] = float(np.linalg.norm(state.error_mm))
+        postures[index] = joints[list(arm.free_joints)]
+    return Solutions(postures, converged, iterations, error_mm)
+
+
+class _DlsStep:
+    """The compiled step, called through CasADi's raw buffers."""
+
+    def __init__(self, arm: Arm) -> None:
+        kinematics = kinematics_of(arm)
+        joints = casadi.SX.sym("q", arm.n_joints)
+        target = casadi.SX.sym("target_mm", 3)
+        damping = casadi.SX.sym("lambda_squared")
+        tip, axis, jacobian = kinematics.symbolic_jacobian(joints)
+        to_cm = casadi.diag(casadi.DM([1 / MM_PER_CM] * 3 + [1.0] * 3))
+        turn = casadi.cross(axis, casadi.DM([0, 0, -1])) if arm.pen.hold is PenHold.TOOL_AXIS else casadi.SX.zeros(3)
+        error = target - tip
+        scaled = to_cm @ jacobian
+        step = scaled.T @ casadi.solve(scaled @ scaled.T + damping * casadi.SX.eye(6), to_cm @ casadi.vertcat(error, turn))
+        function = casadi.Function("dls", [joints, target, damping],
+                                   [casadi.densify(error), casadi.densify(tip), casadi.densify(step)])
+        self._buffer, self._evaluate = function.buffer()
+        self._arguments = [np.zeros(size) for size in (arm.n_joints, 3, 1)]
+        self._results = [np.zeros(size) for size in (3, 3, arm.n_joints)]
+        for index, array in enumerate(self._arguments):
+            self._buffer.set_arg(index, memoryview(array))
+        for index, array in enumerate(self._results):
+            self._buffer.set_res(index, memoryview(array))
+
+    def __call__(self, joints: FloatArray, target_mm: FloatArray, damping: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        self._arguments[0][:], self._arguments[1][:], self._arguments[2][0] = joints, target_mm, damping
+        self._evaluate()
+        error, tip, step = (array.copy() for array in self._results)
+        return error, tip, step
+
+
+@lru_cache(maxsize=16)
+def _dls_step(arm: Arm) -> _DlsStep:
+    return _DlsStep(arm)

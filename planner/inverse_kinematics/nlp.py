@@ -1,0 +1,82 @@
+"""Inverse kinematics as a nonlinear programme with joint limits, one target at a time.
+
+`min |(q - q_before) / speed|^2 + w |(q - middle) / half range|^2` subject to `task(q) = target` and the
+limits of all joints, driven ones included. Built once for an arm, warm-started along a stroke.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import casadi
+import numpy as np
+
+from planner.arms.arm import Arm
+from planner.arms.kinematics import kinematics_of
+from planner.arms.projection import joint_scale
+from planner.arrays import FloatArray
+from planner.inverse_kinematics.result import Solutions
+
+_CENTRING = 1e-3
+_TOLERANCE_MM = 1e-3
+
+
+class NlpSolver:
+    """The parametric problem of one arm: SQP first, an interior-point method where that fails."""
+
+    def __init__(self, arm: Arm) -> None:
+        self.arm = arm
+        self.kinematics = kinematics_of(arm)
+        free, joints = self.kinematics.free, self.kinematics.joints
+        before = casadi.SX.sym("before", self.kinematics.n_free)
+        middle, half = (arm.minimum + arm.maximum) / 2, (arm.maximum - arm.minimum) / 2
+        objective = (casadi.sumsqr((free - before) / joint_scale(self.kinematics))
+                     + _CENTRING * casadi.sumsqr((joints - middle) / half))
+        problem = {"x": free, "p": before, "f": objective, "g": casadi.vertcat(self.kinematics.task, joints)}
+        quiet = {"print_time": False, "error_on_fail": False}
+        self._fast = casadi.nlpsol("sqp", "sqpmethod", problem, {
+            **quiet, "qpsol": "qrqp", "print_header": False, "print_iteration": False, "print_status": False,
+            "tol_pr": 1e-9, "tol_du": 1e-7, "max_iter": 30,
+            "qpsol_options": {"print_iter": False, "print_header": False, "print_info": False, "error_on_fail": False}})
+        self._sure = casadi.nlpsol("ip", "ipopt", problem, {
+            **quiet, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.max_iter": 300, "ipopt.tol": 1e-10})
+
+    def solve(self, target_mm: FloatArray, before: FloatArray) -> tuple[FloatArray, bool, int, float]:
+        """Posture (n_free,) for a tip (3,) near the posture before, whether it converged, iterations, error in mm."""
+        target = self.kinematics.task_target(target_mm[None])[0]
+        bounds = {"lbg": np.concatenate((target, self.arm.minimum)), "ubg": np.concatenate((target, self.arm.maximum))}
+        solution, iterations = before, 0
+        for solver in (self._fast, self._sure):
+            found: dict[str, Any] = solver(x0=before, p=before, **bounds)
+            statistics = solver.stats()
+            iterations += int(statistics["iter_count"])
+            solution = np.array(found["x"]).ravel()
+            values = np.array(found["g"]).ravel()
+            miss = float(np.abs(values[:len(target)] - target).max())
+            outside = float(np.maximum(bounds["lbg"] - values, values - bounds["ubg"])[len(target):].max())
+            if statistics["success"] and miss < _TOLERANCE_MM and outside < 1e-6:
+                return solution, True, iterations, miss
+        return solution, False, iterations, miss
+
+
+@lru_cache(maxsize=16)
+def nlp_solver(arm: Arm) -> NlpSolver:
+    """The solver of an arm, built once."""
+    return NlpSolver(arm)
+
+
+def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray) -> Solutions:
+    """Targets (n, 3) one after the other from free joints (n_free,), each near the one before."""
+    solver = nlp_solver(arm)
+    postures, converged, iterations, errors = [], [], [], []
+    before = start
+    for target in targets_mm:
+        posture, good, count, miss = solver.solve(target, before)
+        if good:
+            before = posture
+        postures.append(posture)
+        converged.append(good)
+        iterations.append(count)
+        errors.append(miss)
+    return Solutions(np.array(postures), np.array(converged), np.array(iterations), np.array(errors))

@@ -1,0 +1,138 @@
+"""Joint paths for pen paths, by any method: reference postures first, then exact ones near them.
+
+A method decides how the arm's redundancy is used; it gives a reference posture for every knot of a path. The
+nearest postures that put the pen exactly on the path are then joined by splines, so that every method
+yields smooth joint paths of the same accuracy.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from planner.arms.arm import Arm
+from planner.arms.closed_forms import closed_form_postures
+from planner.arms.kinematics import kinematics_of
+from planner.arms.posture_field import posture_field
+from planner.arms.projection import project
+from planner.arrays import FloatArray
+from planner.inverse_kinematics import dls, nlp
+from planner.inverse_kinematics.joint_path import JointPaths, interpolate
+from planner.placement.pen_path import PenPaths
+from planner.ragged import starts_of
+from planner.settings import Method
+
+_TARGET_SPACING_MM = 1.0
+"""Distance between the targets that sequential methods solve for; splines carry their postures between."""
+_CHECKED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+
+
+@dataclass(frozen=True, slots=True)
+class Obstacle:
+    """Why a path cannot be followed: the first place where it fails."""
+
+    path: int
+    tip_mm: tuple[float, float]
+    reason: str
+    joint: str | None
+    limit: str | None
+
+
+def postures_at(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
+    """(n, n_free) reference postures for single tips (n, 3), each by itself."""
+    if method is Method.PATH:
+        return posture_field(arm).reference(tips_mm)
+    if method is Method.CLOSED_FORM:
+        return closed_form_postures(arm)(arm, tips_mm)
+    if len(tips_mm) == 0:
+        return np.empty((0, len(arm.free_joints)))
+    return np.concatenate([_sequence(arm, method, tip[None]) for tip in tips_mm])
+
+
+def exact_postures(arm: Arm, references: FloatArray, tips_mm: FloatArray) -> tuple[FloatArray, list[Obstacle]]:
+    """Exact postures near the references, and for those that fail the reason, with the index as path."""
+    free, exact = project(kinematics_of(arm), np.nan_to_num(references), tips_mm)
+    obstacles = []
+    joints = arm.complete(free)
+    outside = np.maximum(arm.minimum - joints, joints - arm.maximum).max(axis=1) > 1e-9
+    for index in np.flatnonzero(~exact | outside).tolist():
+        obstacles.append(_obstacle(arm, index, joints[index], tips_mm[index], bool(exact[index])))
+    return free, obstacles
+
+
+def joint_paths(arm: Arm, method: Method, paths: PenPaths) -> tuple[JointPaths, list[Obstacle]]:
+    """Joint splines along pen paths on the paper, and the paths that cannot be followed, each with where."""
+    starts = starts_of(paths.n_cells)
+    corners = paths.points(np.array([0.0, 1.0]))
+    knots = np.insert(corners[:, 0], starts[1:], corners[starts[1:] - 1, 1], axis=0)
+    tips = np.column_stack((knots, np.zeros(len(knots))))
+    per_path = starts + np.arange(len(starts))  # each path has a knot more than cells
+    if method in (Method.DLS, Method.NLP):
+        references = np.concatenate([
+            _sequential_references(arm, method, tips[first:last])
+            for first, last in zip(per_path[:-1], per_path[1:], strict=True)])
+    else:
+        references = postures_at(arm, method, tips)
+    free, exact = project(kinematics_of(arm), np.nan_to_num(references), tips)
+    splines = interpolate(paths.n_cells, arm.complete(free))
+    return splines, _obstacles(arm, splines, tips, exact, per_path)
+
+
+def _sequence(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
+    """Postures of targets solved one after the other, the first from the middle of the joint ranges."""
+    start = arm.complete(((arm.minimum + arm.maximum) / 2)[list(arm.free_joints)])
+    if method is Method.DLS:
+        return dls.solve_sequence(arm, tips_mm, start, dls.FOR_DRAWING).postures
+    return nlp.solve_sequence(arm, tips_mm, start[list(arm.free_joints)]).postures
+
+
+def _sequential_references(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
+    """(n_knots, n_free): targets about a millimetre apart are solved in turn and joined by a spline."""
+    travelled = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(tips_mm, axis=0), axis=1))))
+    count = max(int(np.ceil(travelled[-1] / _TARGET_SPACING_MM)), 1) + 1
+    wanted = np.searchsorted(travelled, np.linspace(0.0, travelled[-1], count))
+    chosen = np.unique(np.concatenate(([0], np.minimum(wanted, len(tips_mm) - 1), [len(tips_mm) - 1])))
+    postures = _sequence(arm, method, tips_mm[chosen])
+    spline = make_interp_spline(chosen, postures, k=min(5, 2 * ((len(chosen) - 2) // 2) + 1))
+    references: FloatArray = np.ascontiguousarray(spline(np.arange(len(tips_mm))))
+    return references
+
+
+def _obstacles(arm: Arm, splines: JointPaths, tips_mm: FloatArray, exact: FloatArray, per_path: FloatArray
+               ) -> list[Obstacle]:
+    """The first place of each path where the pen is off its target or a joint beyond its limits."""
+    starts = starts_of(splines.n_cells)
+    joints = splines.positions(_CHECKED)
+    outside = (np.maximum(arm.minimum - joints, joints - arm.maximum).max(axis=2) > 1e-9)
+    obstacles = []
+    missed = np.add.reduceat(~exact, per_path[:-1]) > 0
+    beyond = np.add.reduceat(outside.any(axis=1), starts[:-1]) > 0
+    for path in np.flatnonzero(missed | beyond).tolist():
+        if missed[path]:
+            knot = int(per_path[path] + np.argmin(exact[per_path[path]:per_path[path + 1]]))
+            cell = min(knot - path, int(starts[path + 1]) - 1)
+            obstacles.append(_obstacle(arm, path, joints[cell, 0], tips_mm[knot], exact=False))
+        else:
+            cell = int(starts[path] + np.argmax(outside[starts[path]:starts[path + 1]].any(axis=1)))
+            at = int(np.argmax(outside[cell]))
+            obstacles.append(_obstacle(arm, path, joints[cell, at], tips_mm[cell + path], exact=True))
+    return obstacles
+
+
+def _obstacle(arm: Arm, path: int, joints: FloatArray, tip_mm: FloatArray, exact: bool) -> Obstacle:
+    tip = (float(tip_mm[0]), float(tip_mm[1]))
+    if exact:
+        excess = np.maximum(arm.minimum - joints, joints - arm.maximum)
+        worst = int(np.argmax(excess))
+        joint = arm.joints[worst]
+        low = joints[worst] < arm.minimum[worst]
+        bound = joint.minimum if low else joint.maximum
+        limit = f"{'lower' if low else 'upper'} limit {bound / joint.per_file_unit:g} {joint.file_unit}"
+        return Obstacle(path, tip, f"joint {joint.name} would be at {joints[worst] / joint.per_file_unit:.2f}"
+                        f" {joint.file_unit}, beyond its {limit}", joint.name, limit)
+    kinematics = kinematics_of(arm)
+    reached = kinematics.tip_mm(kinematics.free_of(joints)[None])[0]
+    gap = float(np.hypot(*(reached[:2] - tip_mm[:2])))
+    return Obstacle(path, tip, f"the target is beyond the arm's reach (nearest tip found {gap:.1f} mm away)", None, None)

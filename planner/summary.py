@@ -1,0 +1,62 @@
+"""What a plan amounts to, for people: counts, lengths, and where the time goes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseTimes:
+    """Seconds spent in each phase of a trajectory."""
+
+    drawing_s: float
+    lowering_s: float
+    lifting_s: float
+    travelling_s: float
+    dwelling_s: float
+
+    @property
+    def total_s(self) -> float:
+        return self.drawing_s + self.lowering_s + self.lifting_s + self.travelling_s + self.dwelling_s
+
+
+@dataclass(frozen=True, slots=True)
+class PlanSummary:
+    """Results of one plan. scale: millimetres on paper for one on the SVG's page."""
+
+    n_strokes: int
+    n_taps: int
+    drawn_mm: float
+    travelled_mm: float
+    size_mm: tuple[float, float]
+    scale: float
+    phases: PhaseTimes
+    duration_s: float
+    n_samples: int
+    rate_hz: float
+    warnings: list[str] = field(default_factory=list)
+
+    def lines(self) -> list[str]:
+        """A few lines to read."""
+        phases = self.phases
+        total = max(phases.total_s, 1e-9)
+        shares = ", ".join(f"{name} {seconds:.1f} s ({100 * seconds / total:.0f} %)" for name, seconds in (
+            ("drawing", phases.drawing_s), ("lowering", phases.lowering_s), ("lifting", phases.lifting_s),
+            ("travelling", phases.travelling_s), ("resting", phases.dwelling_s)) if seconds > 0)
+        taps = f", {self.n_taps} of them taps" if self.n_taps else ""
+        mean_speed = self.drawn_mm / phases.drawing_s if phases.drawing_s > 0 else 0.0
+        return [
+            f"{self.n_strokes} strokes{taps}: {self.drawn_mm / 1000:.2f} m drawn,"
+            f" {self.travelled_mm / 1000:.2f} m travelled pen up",
+            f"{self.size_mm[0]:.1f} x {self.size_mm[1]:.1f} mm on paper, {self.scale:.3g} times its size on the page",
+            f"takes {_clock(self.duration_s)} ({shares}); {mean_speed:.0f} mm/s on paper in the mean",
+            f"{self.n_samples} samples at {self.rate_hz:g} Hz",
+        ]
+
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(seconds, 60)
+    hours, minutes = divmod(int(minutes), 60)
+    if hours:
+        return f"{hours} h {minutes} min"
+    return f"{minutes} min {rest:.0f} s" if minutes else f"{rest:.1f} s"

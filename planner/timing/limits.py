@@ -1,0 +1,37 @@
+"""The joint limits that motions are timed within."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.arms.arm import Arm
+from planner.arrays import FloatArray
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Limits:
+    """(n_joints,) largest velocity, acceleration and jerk, in rad or mm and seconds."""
+
+    velocity: FloatArray
+    acceleration: FloatArray
+    jerk: FloatArray
+
+    @staticmethod
+    def of(arm: Arm) -> Limits:
+        """The arm's own, less a part in a million, so that a file's rounding cannot push a sample over."""
+        keep = 1.0 - 1e-6
+        return Limits(arm.max_velocity * keep, arm.max_acceleration * keep, arm.max_jerk * keep)
+
+    def slowing_of(self, positions: FloatArray, period_s: float) -> float:
+        """How much slower samples (n, n_joints) of a motion would have to be played for the differences of
+        neighbouring samples to keep all limits; at most 1 where they do."""
+        needed = 0.0
+        difference = positions
+        for order, limit in enumerate((self.velocity, self.acceleration, self.jerk), 1):
+            difference = np.diff(difference, axis=0)
+            if len(difference):
+                ratio = float((np.abs(difference) / limit).max()) / period_s ** order
+                needed = max(needed, ratio ** (1 / order))
+        return needed
