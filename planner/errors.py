@@ -39,7 +39,8 @@ class UnknownArm(PlannerError):
 
     def __init__(self, name: str, known: Sequence[str]) -> None:
         self.name, self.known = name, tuple(known)
-        super().__init__(f"unknown arm '{name}'; known arms: {', '.join(self.known)} (or give the path of a .toml file)")
+        super().__init__(f"unknown arm '{name}'; known arms: {', '.join(self.known)}"
+                         " (or give the path of a .toml file)")
 
 
 class TrajectoryFileError(PlannerError):

@@ -204,8 +204,9 @@ def _timed_taps(arm: Arm, tips_mm: FloatArray, settings: PlanSettings) -> list[_
     blocked = {obstacle.path: obstacle for obstacle in obstacles}
     joints = arm.complete(free)
     rest = max(round(max(settings.dwell_s, _TAP_S) * settings.rate_hz), 1)
-    return [blocked.get(index) or _TimedStroke(joints[index:index + 1], Touch(tip, free[index]), Touch(tip, free[index]), rest)
-            for index, tip in enumerate(tips_mm)]
+    touches = [Touch(tip, posture) for tip, posture in zip(tips_mm, free, strict=True)]
+    return [blocked.get(index) or _TimedStroke(joints[index:index + 1], touch, touch, rest)
+            for index, touch in enumerate(touches)]
 
 
 def _rate_cap(paths: PenPaths, settings: PlanSettings) -> FloatArray:
@@ -280,6 +281,7 @@ def _summary(trajectory: Trajectory, strokes: Sequence[FloatArray], timed: Seque
     return PlanSummary(
         n_strokes=len(timed), n_taps=sum(len(stroke.joints) == 1 for stroke in timed),
         drawn_mm=float(sum(np.hypot(*np.diff(stroke, axis=0).T).sum() for stroke in strokes if len(stroke) > 1)),
-        travelled_mm=float(sum(np.hypot(*(after.first.tip_mm - before.last.tip_mm)) for before, after in pairwise(timed))),
+        travelled_mm=float(sum(np.hypot(*(after.first.tip_mm - before.last.tip_mm))
+                               for before, after in pairwise(timed))),
         size_mm=size_mm, scale=scale, phases=phases, duration_s=trajectory.duration_s,
         n_samples=trajectory.n_samples, rate_hz=trajectory.rate_hz, warnings=warnings)

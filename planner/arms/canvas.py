@@ -167,7 +167,8 @@ def _border(sides: FloatArray) -> FloatArray:
     """(n, 2) dense points on the border of a rectangle (x0, x1, y0, y1)."""
     x0, x1, y0, y1 = sides
     x, y = np.linspace(x0, x1, 400), np.linspace(y0, y1, 800)
-    return np.concatenate([np.column_stack(np.broadcast_arrays(*pair)) for pair in ((x, y0), (x, y1), (x0, y), (x1, y))])
+    lines = ((x, y0), (x, y1), (x0, y), (x1, y))
+    return np.concatenate([np.column_stack(np.broadcast_arrays(*line)) for line in lines])
 
 
 def _largest_rectangle(mask: BoolArray) -> tuple[int, int, int, int] | None:

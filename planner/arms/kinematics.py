@@ -6,49 +6,14 @@ its coupling. Compiled functions are evaluated over whole arrays of postures at 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property, lru_cache
 
 import casadi
 import numpy as np
 
 from planner.arms.arm import Arm, JointKind, PenHold
+from planner.arms.compiled import CompiledFunction
 from planner.arrays import FloatArray
-
-_BLOCK = 256
-
-
-class MappedFunction:
-    """A CasADi function evaluated over the rows of arrays.
-
-    Inputs are (n, k_i) arrays, outputs (n, *shape_i) arrays. The function is mapped over blocks of a
-    fixed size through CasADi's raw buffers, so nothing is copied or looked up per point.
-    """
-
-    def __init__(self, name: str, inputs: Sequence[casadi.SX], outputs: Sequence[casadi.SX]) -> None:
-        dense = [casadi.densify(casadi.vec(output.T)) for output in outputs]  # row-major, as NumPy reads it
-        self._shapes = [tuple(output.shape) if output.shape[1] > 1 else (output.shape[0],) for output in outputs]
-        self.function = casadi.Function(name, [casadi.vec(value) for value in inputs], dense)
-        mapped = self.function.map(_BLOCK)
-        self._buffer, self._evaluate = mapped.buffer()
-        self._arguments = [np.zeros((_BLOCK, value.numel())) for value in inputs]
-        self._results = [np.zeros((_BLOCK, value.numel())) for value in dense]
-        for index, array in enumerate(self._arguments):
-            self._buffer.set_arg(index, memoryview(array))
-        for index, array in enumerate(self._results):
-            self._buffer.set_res(index, memoryview(array))
-
-    def __call__(self, *inputs: FloatArray) -> list[FloatArray]:
-        n_points = len(inputs[0])
-        outputs = [np.empty((n_points, array.shape[1])) for array in self._results]
-        for start in range(0, n_points, _BLOCK):
-            count = min(_BLOCK, n_points - start)
-            for argument, values in zip(self._arguments, inputs, strict=True):
-                argument[:count] = values[start:start + count]
-            self._evaluate()
-            for output, result in zip(outputs, self._results, strict=True):
-                output[start:start + count] = result[:count]
-        return [output.reshape(n_points, *shape) for output, shape in zip(outputs, self._shapes, strict=True)]
 
 
 class Kinematics:
@@ -84,25 +49,25 @@ class Kinematics:
         return self.n_free - self.n_task
 
     @cached_property
-    def _pose(self) -> MappedFunction:
-        return MappedFunction("pose", [self.free], [self.frames[-1]])
+    def _pose(self) -> CompiledFunction:
+        return CompiledFunction("pose", [self.free], [self.frames[-1]])
 
     @cached_property
-    def _tip(self) -> MappedFunction:
-        return MappedFunction("tip", [self.free], [self.tip])
+    def _tip(self) -> CompiledFunction:
+        return CompiledFunction("tip", [self.free], [self.tip])
 
     @cached_property
-    def _nodes(self) -> MappedFunction:
-        return MappedFunction("nodes", [self.free], [self.nodes])
+    def _nodes(self) -> CompiledFunction:
+        return CompiledFunction("nodes", [self.free], [self.nodes])
 
     @cached_property
-    def _task(self) -> MappedFunction:
-        return MappedFunction("task", [self.free], [self.task, casadi.jacobian(self.task, self.free)])
+    def _task(self) -> CompiledFunction:
+        return CompiledFunction("task", [self.free], [self.task, casadi.jacobian(self.task, self.free)])
 
     @cached_property
-    def _jacobian(self) -> MappedFunction:
+    def _jacobian(self) -> CompiledFunction:
         joints = casadi.SX.sym("q", self.arm.n_joints)
-        return MappedFunction("jacobian", [joints], [self.symbolic_jacobian(joints)[2]])
+        return CompiledFunction("jacobian", [joints], [self.symbolic_jacobian(joints)[2]])
 
     def symbolic_jacobian(self, joints: casadi.SX) -> tuple[casadi.SX, casadi.SX, casadi.SX]:
         """Tip, tool axis and the geometric 6 x n Jacobian at symbolic joints, each taken as independent."""
@@ -164,7 +129,7 @@ def _chain(arm: Arm, joints: casadi.SX) -> tuple[list[casadi.SX], list[casadi.SX
     return frames, corners
 
 
-def _dh(theta: casadi.SX, d: casadi.SX, a_mm: float, alpha_rad: float) -> casadi.SX:
+def _dh(theta: casadi.SX | float, d: casadi.SX | float, a_mm: float, alpha_rad: float) -> casadi.SX:
     """Rz(theta) Tz(d) Tx(a) Rx(alpha), with exact zeros and ones where alpha is a right angle."""
     c, s = casadi.cos(theta), casadi.sin(theta)
     ca, sa = _exact(np.cos(alpha_rad)), _exact(np.sin(alpha_rad))

@@ -18,9 +18,9 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from planner.arms.arm import Arm, JointKind
 from planner.arms.kinematics import Kinematics, kinematics_of
+from planner.arms.projection import joint_scale, project
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import PlanError
-from planner.arms.projection import joint_scale, project
 
 _COARSE_STEP_MM = 6.0
 _SAMPLES = 160
@@ -56,7 +56,8 @@ class PostureField:
     def reference(self, tip_mm: FloatArray) -> FloatArray:
         """(n, n_free) field postures at tips (n, 3), whatever their height; outside the field's radii,
         those of its edge."""
-        reference: FloatArray = np.ascontiguousarray(self._spline(self._coordinate(np.hypot(tip_mm[:, 0], tip_mm[:, 1]))))
+        radius = np.hypot(tip_mm[:, 0], tip_mm[:, 1])
+        reference: FloatArray = np.ascontiguousarray(self._spline(self._coordinate(radius)))
         reference[:, 0] += np.arctan2(tip_mm[:, 1], tip_mm[:, 0])
         return reference
 
@@ -70,16 +71,17 @@ def within_limits(arm: Arm, free: FloatArray, slack: float = 1e-9, first_joint: 
     """(n,) whether postures (n, n_free) keep all joint limits (without the first joint's, if not asked for)."""
     joints = arm.complete(free)
     start = 0 if first_joint else 1
-    inside: BoolArray = ((joints >= arm.minimum - slack) & (joints <= arm.maximum + slack))[:, start:].all(axis=1)
-    return inside
+    inside = (joints >= arm.minimum - slack) & (joints <= arm.maximum + slack)
+    kept: BoolArray = np.all(inside[:, start:], axis=1)
+    return kept
 
 
 def slowest_direction_mm_s(kinematics: Kinematics, free: FloatArray) -> FloatArray:
     """(n,) tip speed that is possible in every direction with joint speeds of unit norm in units of their
     limits: the smallest singular value of J diag(speed). Zero at a singular posture."""
     _, jacobian = kinematics.task_and_jacobian(free)
-    values: FloatArray = np.linalg.svd(jacobian * joint_scale(kinematics), compute_uv=False)[:, -1]
-    return values
+    singular: FloatArray = np.asarray(np.linalg.svd(jacobian * joint_scale(kinematics), compute_uv=False))
+    return singular[:, -1]
 
 
 @lru_cache(maxsize=16)
@@ -145,7 +147,7 @@ def _centredness(arm: Arm, free: FloatArray) -> FloatArray:
     """(n,) mean square distance of the joints but the first from the middle of their ranges, 1 at the limits."""
     joints = arm.complete(free)
     middle, half = (arm.maximum + arm.minimum) / 2, (arm.maximum - arm.minimum) / 2
-    cost: FloatArray = (((joints - middle) / half)[:, 1:] ** 2).mean(axis=1) if arm.n_joints > 1 else np.zeros(len(free))
+    cost: FloatArray = (((joints - middle) / half)[:, 1:] ** 2).sum(axis=1) / max(arm.n_joints - 1, 1)
     return cost
 
 

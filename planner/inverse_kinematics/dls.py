@@ -16,6 +16,7 @@ import casadi
 import numpy as np
 
 from planner.arms.arm import Arm, PenHold
+from planner.arms.compiled import CompiledFunction
 from planner.arms.kinematics import kinematics_of
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.result import Solutions
@@ -52,9 +53,10 @@ def iterate(arm: Arm, start: FloatArray, target_mm: FloatArray, lambda_squared: 
     step = _dls_step(arm)
     matrix, constant = arm.coupling_matrix
     free = list(arm.free_joints)
-    joints = np.array(start, dtype=np.float64)
+    joints, target = np.array(start, dtype=np.float64), np.asarray(target_mm, dtype=np.float64)
+    damping = np.array([[lambda_squared]])
     while True:
-        error, tip, change = step(joints, target_mm, lambda_squared)
+        (error,), (tip,), (change,) = step(joints[None], target[None], damping)
         yield DlsStep(joints, tip, error, change)
         joints = matrix @ (joints + change)[free] + constant
 
@@ -83,37 +85,16 @@ def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, settings
     return Solutions(postures, converged, iterations, error_mm)
 
 
-class _DlsStep:
-    """The compiled step, called through CasADi's raw buffers."""
-
-    def __init__(self, arm: Arm) -> None:
-        kinematics = kinematics_of(arm)
-        joints = casadi.SX.sym("q", arm.n_joints)
-        target = casadi.SX.sym("target_mm", 3)
-        damping = casadi.SX.sym("lambda_squared")
-        tip, axis, jacobian = kinematics.symbolic_jacobian(joints)
-        to_cm = casadi.diag(casadi.DM([1 / MM_PER_CM] * 3 + [1.0] * 3))
-        turn = casadi.cross(axis, casadi.DM([0, 0, -1])) if arm.pen.hold is PenHold.TOOL_AXIS else casadi.SX.zeros(3)
-        error = target - tip
-        scaled = to_cm @ jacobian
-        step = scaled.T @ casadi.solve(scaled @ scaled.T + damping * casadi.SX.eye(6), to_cm @ casadi.vertcat(error, turn))
-        function = casadi.Function("dls", [joints, target, damping],
-                                   [casadi.densify(error), casadi.densify(tip), casadi.densify(step)])
-        self._buffer, self._evaluate = function.buffer()
-        self._arguments = [np.zeros(size) for size in (arm.n_joints, 3, 1)]
-        self._results = [np.zeros(size) for size in (3, 3, arm.n_joints)]
-        for index, array in enumerate(self._arguments):
-            self._buffer.set_arg(index, memoryview(array))
-        for index, array in enumerate(self._results):
-            self._buffer.set_res(index, memoryview(array))
-
-    def __call__(self, joints: FloatArray, target_mm: FloatArray, damping: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-        self._arguments[0][:], self._arguments[1][:], self._arguments[2][0] = joints, target_mm, damping
-        self._evaluate()
-        error, tip, step = (array.copy() for array in self._results)
-        return error, tip, step
-
-
 @lru_cache(maxsize=16)
-def _dls_step(arm: Arm) -> _DlsStep:
-    return _DlsStep(arm)
+def _dls_step(arm: Arm) -> CompiledFunction:
+    """(joints, target in mm, lambda^2) to (error in mm, tip in mm, step)."""
+    joints = casadi.SX.sym("q", arm.n_joints)
+    target = casadi.SX.sym("target_mm", 3)
+    damping = casadi.SX.sym("lambda_squared")
+    tip, axis, jacobian = kinematics_of(arm).symbolic_jacobian(joints)
+    to_cm = casadi.diag(casadi.DM([1 / MM_PER_CM] * 3 + [1.0] * 3))
+    turn = casadi.cross(axis, casadi.DM([0, 0, -1])) if arm.pen.hold is PenHold.TOOL_AXIS else casadi.SX.zeros(3)
+    error = target - tip
+    scaled = to_cm @ jacobian
+    step = scaled.T @ casadi.solve(scaled @ scaled.T + damping * casadi.SX.eye(6), to_cm @ casadi.vertcat(error, turn))
+    return CompiledFunction("dls", [joints, target, damping], [error, tip, step], block=1)

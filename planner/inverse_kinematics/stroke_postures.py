@@ -8,6 +8,7 @@ yields smooth joint paths of the same accuracy.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
@@ -17,7 +18,7 @@ from planner.arms.closed_forms import closed_form_postures
 from planner.arms.kinematics import kinematics_of
 from planner.arms.posture_field import posture_field
 from planner.arms.projection import project
-from planner.arrays import FloatArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.inverse_kinematics import dls, nlp
 from planner.inverse_kinematics.joint_path import JointPaths, interpolate
 from planner.placement.pen_path import PenPaths
@@ -54,12 +55,10 @@ def postures_at(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
 def exact_postures(arm: Arm, references: FloatArray, tips_mm: FloatArray) -> tuple[FloatArray, list[Obstacle]]:
     """Exact postures near the references, and for those that fail the reason, with the index as path."""
     free, exact = project(kinematics_of(arm), np.nan_to_num(references), tips_mm)
-    obstacles = []
     joints = arm.complete(free)
     outside = np.maximum(arm.minimum - joints, joints - arm.maximum).max(axis=1) > 1e-9
-    for index in np.flatnonzero(~exact | outside).tolist():
-        obstacles.append(_obstacle(arm, index, joints[index], tips_mm[index], bool(exact[index])))
-    return free, obstacles
+    return free, [_obstacle(arm, index, joints[index], tips_mm[index], bool(exact[index]))
+                  for index in np.flatnonzero(~exact | outside).tolist()]
 
 
 def joint_paths(arm: Arm, method: Method, paths: PenPaths) -> tuple[JointPaths, list[Obstacle]]:
@@ -72,7 +71,7 @@ def joint_paths(arm: Arm, method: Method, paths: PenPaths) -> tuple[JointPaths, 
     if method in (Method.DLS, Method.NLP):
         references = np.concatenate([
             _sequential_references(arm, method, tips[first:last])
-            for first, last in zip(per_path[:-1], per_path[1:], strict=True)])
+            for first, last in pairwise(per_path)])
     else:
         references = postures_at(arm, method, tips)
     free, exact = project(kinematics_of(arm), np.nan_to_num(references), tips)
@@ -100,7 +99,7 @@ def _sequential_references(arm: Arm, method: Method, tips_mm: FloatArray) -> Flo
     return references
 
 
-def _obstacles(arm: Arm, splines: JointPaths, tips_mm: FloatArray, exact: FloatArray, per_path: FloatArray
+def _obstacles(arm: Arm, splines: JointPaths, tips_mm: FloatArray, exact: BoolArray, per_path: IntArray
                ) -> list[Obstacle]:
     """The first place of each path where the pen is off its target or a joint beyond its limits."""
     starts = starts_of(splines.n_cells)

@@ -10,7 +10,8 @@ from planner.arrays import FloatArray
 from planner.errors import DoesNotFit, UsageError
 
 
-def fit_to_canvas(low_mm: FloatArray, high_mm: FloatArray, canvas: Canvas, *, margin_mm: float, scale: bool) -> FloatArray:
+def fit_to_canvas(low_mm: FloatArray, high_mm: FloatArray, canvas: Canvas, *, margin_mm: float, scale: bool
+                  ) -> FloatArray:
     """(2, 3) affine from the page, turned as it will be drawn, to arm millimetres.
 
     low_mm, high_mm: corners of the drawing's extent on that page. Centred on the canvas; scaled uniformly

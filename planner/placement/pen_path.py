@@ -1,8 +1,9 @@
 """From polylines to smooth pen paths: C4 curves within a tolerance that start and end fit for rest.
 
 Each path is a uniform quintic B-spline in sigma whose control points are taken from the polyline (the
-variation-diminishing approximation of Schoenberg, 1967). It rounds every corner by an amount that is proportional to the local
-spacing of control points, so the spacing is made fine where the polyline turns and coarse where it is straight.
+variation-diminishing approximation of Schoenberg, 1967). It rounds every corner by an amount that is
+proportional to the local spacing of control points, so the spacing is made fine where the polyline turns and
+coarse where it is straight.
 Near both ends the arc length grows with sigma cubed, as it grows with time cubed when a constant jerk
 starts a motion: sigma then moves at a finite rate even where the pen is at rest.
 """
@@ -146,8 +147,8 @@ class _Spacing:
         node[2::3], value[2::3] = at[1:] - fall, np.maximum(top, np.minimum(a, b))
         node = np.maximum.accumulate(node)
         step, slope = np.diff(node), np.diff(value)
-        inverse = np.where(np.abs(slope) > 1e-9 * value[:-1], np.log(value[1:] / value[:-1]) / np.where(slope == 0, 1, slope),
-                           1 / value[:-1])
+        level = np.abs(slope) <= 1e-9 * value[:-1]
+        inverse = np.where(level, 1 / value[:-1], np.log(value[1:] / value[:-1]) / np.where(level, 1.0, slope))
         cells = np.concatenate(([0.0], np.cumsum(step * inverse)))
         begin = np.interp(line.begin_mm, node, cells)
         return _Spacing(node, value, cells, begin, np.interp(line.end_mm, node, cells) - begin)
@@ -160,7 +161,8 @@ class _Spacing:
         into = cells - self.cells[k]
         flat = np.abs(slope * into) < 1e-9
         growth = np.where(flat, into, np.expm1(slope * into) / np.where(flat, 1.0, slope))
-        return self.node_mm[k] + np.clip(self.spacing_mm[k] * growth, 0.0, step)
+        arc: FloatArray = self.node_mm[k] + np.clip(self.spacing_mm[k] * growth, 0.0, step)
+        return arc
 
     def at(self, arc_mm: FloatArray) -> FloatArray:
         spacing: FloatArray = np.interp(arc_mm, self.node_mm, self.spacing_mm)
@@ -171,7 +173,7 @@ def _sampled(line: _Polylines, spacing: _Spacing) -> tuple[PenPaths, FloatArray]
     """The splines with that spacing, and the arc length of each of their control points."""
     n_cells = np.maximum(np.ceil(spacing.total).astype(np.int64) + _RAMP_CELLS, _FEWEST_CELLS)
     count = n_cells + DEGREE
-    sigma = within(count) - 2.0
+    sigma = within(count).astype(np.float64) - 2.0
     per_control = np.repeat(np.arange(len(n_cells)), count)
     stretch = spacing.total / (n_cells - _RAMP_CELLS)
 

@@ -227,7 +227,8 @@ class _Solver:
         by_value = -0.5 * _SIMPSON[:, None] * root + 0.5 * root * (pushes[3] + pushes[4]).sum(axis=1)
         by_value[0] += pushes[0] / self.cap
         # Second derivative of the time less that of the jerk limits' J / sqrt(b), where that is positive.
-        second = 0.75 * np.maximum(_SIMPSON[:, None] - (multipliers[3] + multipliers[4]).sum(axis=1), 1e-9) * root / value
+        convex = np.maximum(_SIMPSON[:, None] - (multipliers[3] + multipliers[4]).sum(axis=1), 1e-9)
+        second = 0.75 * convex * root / value
         second += 0.25 * root ** 2 * jerk_stiffness.sum(axis=1)
         second[0] += stiffness[0] / self.cap ** 2
         crossed = 0.5 * root * np.einsum("fejk,ejk->fek", self.jerk, stiffness[3] - stiffness[4])

@@ -44,5 +44,5 @@ def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: fl
     trajectory = ruckig.Trajectory(1)
     result = ruckig.Ruckig(1).calculate(request, trajectory)
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise ArithmeticError(f"Ruckig: {result} for distance {distance:g} within {velocity:g}, {acceleration:g}, {jerk:g}")
+        raise ArithmeticError(f"Ruckig: {result} over {distance:g} within {velocity:g}, {acceleration:g}, {jerk:g}")
     return RestToRest(distance, trajectory)
