@@ -134,4 +134,5 @@ def _obstacle(arm: Arm, path: int, joints: FloatArray, tip_mm: FloatArray, exact
     kinematics = kinematics_of(arm)
     reached = kinematics.tip_mm(kinematics.free_of(joints)[None])[0]
     gap = float(np.hypot(*(reached[:2] - tip_mm[:2])))
-    return Obstacle(path, tip, f"the target is beyond the arm's reach (nearest tip found {gap:.1f} mm away)", None, None)
+    reason = f"the target is beyond the arm's reach (nearest tip found {gap:.1f} mm away)"
+    return Obstacle(path, tip, reason, None, None)

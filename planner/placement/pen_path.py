@@ -17,7 +17,7 @@ import numpy as np
 
 from planner.arrays import FloatArray, IntArray
 from planner.ragged import starts_of, within
-from planner.spline import evaluate, first_controls
+from planner.spline import evaluate, evaluate_at, first_controls
 
 DEGREE = 5
 _LONGEST_CELL_MM = 0.8
@@ -30,6 +30,8 @@ _ROUNDS = 14
 _CORNER_GAIN = 0.5694
 """A lone corner of turning angle t is cut by 0.5694 sin(t / 2) of the spacing: half the mean absolute
 deviation of the quintic B-spline kernel times |u1 - u0| = 2 sin(t / 2)."""
+_SAMPLED = np.array([0.0, 0.25, 0.5, 0.75])
+"""Fractions of every cell at which a path is compared with its polyline."""
 _GAP_MM = 1e4
 _FIRST_OFFSETS = np.array([-5.0, 0.5, 0.0, -0.5, 5.0])
 """Control points of sigma cubed on a uniform quintic spline with a knot at zero (its blossom)."""
@@ -212,10 +214,15 @@ def _ramped(sigma: FloatArray, n_cells: IntArray) -> FloatArray:
 
 def _deviation(line: _Polylines, paths: PenPaths, arcs_mm: FloatArray, spacing: _Spacing
                ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """How far each sampled curve point is from the polyline point of the same arc length, an upper bound
-    of the distance both ways; where on the axis of arc length that is, and the spacing used there."""
-    fractions = np.array([0.0, 0.25, 0.5, 0.75])
+    """How far each sampled curve point is from the polyline point of the same arc length, and each vertex from
+    the curve there: upper bounds of the distance both ways. Also where on the axis of arc length that is,
+    and the spacing used there."""
     cells = first_controls(paths.n_cells, DEGREE)
-    at = evaluate(arcs_mm[:, None], cells, fractions, DEGREE)[:, :, 0].ravel()
-    gap = evaluate(paths.controls_mm, cells, fractions, DEGREE).reshape(-1, 2) - line.at(at)
-    return np.hypot(*gap.T), at, spacing.at(at)
+    at = evaluate(arcs_mm[:, None], cells, _SAMPLED, DEGREE)[:, :, 0].ravel()
+    gap = evaluate(paths.controls_mm, cells, _SAMPLED, DEGREE).reshape(-1, 2) - line.at(at)
+    # A corner is furthest from the curve, and mostly lies between samples.
+    passed = np.interp(line.arc_mm, at, np.arange(len(at))) / len(_SAMPLED)
+    cell = passed.astype(np.int64)
+    corner_gap = evaluate_at(paths.controls_mm, cells[cell], passed - cell, DEGREE) - line.points_mm
+    at = np.concatenate((at, line.arc_mm))
+    return np.hypot(*np.concatenate((gap, corner_gap)).T), at, spacing.at(at)
