@@ -95,12 +95,12 @@ class Kinematics:
     def task_and_jacobian(self, free: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Task (n, n_task) and its derivative by the free joints (n, n_task, n_free)."""
         task, jacobian = self._task(free)
-        return task, jacobian
+        return task, jacobian.reshape(len(free), self.n_task, self.n_free)
 
     def jacobian(self, joints: FloatArray) -> FloatArray:
         """Geometric Jacobian in the base frame, (n, 6, n_joints): linear rows in mm, then angular rows,
         of all joints (n, n_joints) as if no coupling held."""
-        return self._jacobian(joints)[0]
+        return self._jacobian(joints)[0].reshape(len(joints), 6, self.arm.n_joints)
 
     def task_target(self, tip_mm: FloatArray) -> FloatArray:
         """(n, n_task) the task's value where the tip is at (n, 3) and the pen is held as the arm holds it."""

@@ -1,0 +1,94 @@
+"""Arms for tests of the kinematics: those that come along, variants of them, chains made up at random, and the
+product of Denavit-Hartenberg matrices that all of them are measured against."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import pi
+from pathlib import Path
+
+import numpy as np
+from hypothesis import strategies as st
+
+from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Workspace
+from planner.arms.arm_file import arms_folder, load_arm, read_arm_file
+from planner.arrays import FloatArray
+
+DRAWING_ARMS = ("drawing_arm", "drawing_arm_2022")
+
+load_once = lru_cache(load_arm)
+"""One value for each arm, as what is computed for an arm is kept by its identity."""
+
+
+def dh_matrix(theta: float, d: float, a: float, alpha: float) -> FloatArray:
+    """Rz(theta) Tz(d) Tx(a) Rx(alpha), multiplied out from its four factors."""
+    c, s, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
+    turn = np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    shift = np.array([[1, 0, 0, a], [0, 1, 0, 0], [0, 0, 1, d], [0, 0, 0, 1]])
+    twist = np.array([[1, 0, 0, 0], [0, ca, -sa, 0], [0, sa, ca, 0], [0, 0, 0, 1]])
+    return turn @ shift @ twist
+
+
+def dh_frames(arm: Arm, joints: FloatArray) -> list[FloatArray]:
+    """Frames 0..n of one posture (n_joints,), each 4 x 4 in mm."""
+    frames = [np.eye(4)]
+    for joint, value in zip(arm.joints, joints, strict=True):
+        turn, slide = (value, 0.0) if joint.kind is JointKind.REVOLUTE else (0.0, value)
+        frames.append(frames[-1] @ dh_matrix(joint.theta_rad + turn, joint.d_mm + slide, joint.a_mm, joint.alpha_rad))
+    return frames
+
+
+def tips_by_product(arm: Arm, joints: FloatArray) -> FloatArray:
+    """(n, 3) tips of postures (n, n_joints)."""
+    return np.array([dh_frames(arm, posture)[-1][:3, 3] for posture in joints])
+
+
+def variant(folder: Path, lengths_mm: tuple[float, float, float, float, float]) -> Arm:
+    """The drawing arm with other links, L1 .. L5, by way of an arm file."""
+    head, base, *links = (arms_folder() / "drawing_arm.toml").read_text(encoding="utf-8").split("[[joints]]")
+    old = "_mm = 50.0"
+    parts = [head, base.replace("d" + old, f"d_mm = {lengths_mm[0]}")]
+    parts += [link.replace("a" + old, f"a_mm = {length}") for link, length in zip(links, lengths_mm[1:], strict=True)]
+    file = folder / "variant.toml"
+    file.write_text("[[joints]]".join(parts), encoding="utf-8")
+    arm = read_arm_file(file)
+    assert (arm.joints[0].d_mm, *(joint.a_mm for joint in arm.joints[1:])) == lengths_mm
+    return arm
+
+
+_LENGTHS_MM = st.sampled_from([0.0, 20.0, 35.0, 50.0, -15.0])
+_TWISTS_RAD = st.one_of(st.sampled_from([0.0, pi / 2, -pi / 2, pi]), st.floats(-pi, pi))
+
+
+@st.composite
+def chains(draw: st.DrawFn) -> Arm:
+    """Two to seven joints of both kinds in any arrangement, now and then with a coupling."""
+    kinds = draw(st.lists(st.sampled_from([JointKind.REVOLUTE, JointKind.REVOLUTE, JointKind.PRISMATIC]),
+                          min_size=2, max_size=7))
+    joints = tuple(
+        Joint(f"j{index}", kind, draw(_TWISTS_RAD), draw(_LENGTHS_MM), draw(_LENGTHS_MM), draw(_TWISTS_RAD),
+              -2.0, 2.0, 3.0, 30.0, 300.0)
+        for index, kind in enumerate(kinds))
+    turning = [index for index, kind in enumerate(kinds) if kind is JointKind.REVOLUTE]
+    couplings: tuple[Coupling, ...] = ()
+    if len(turning) > 1 and draw(st.booleans()):
+        driven, *others = draw(st.permutations(turning))
+        weights = draw(st.lists(st.floats(-2, 2), min_size=len(others), max_size=len(others)))
+        couplings = (Coupling(driven, draw(st.floats(-pi, pi)), tuple(zip(others, weights, strict=True))),)
+    hold = draw(st.sampled_from([PenHold.TOOL_AXIS, PenHold.FREE]))
+    return Arm("chain", "made for tests", joints, couplings, Pen(hold, (0.6, 0.0, -0.8), 5.0, 1.0), Workspace(0.0, 1.0))
+
+
+def random_postures(arm: Arm, seed: int, count: int) -> FloatArray:
+    """(count, n_free) postures with the free joints anywhere within their limits."""
+    free = list(arm.free_joints)
+    return np.random.default_rng(seed).uniform(arm.minimum[free], arm.maximum[free], (count, len(free)))
+
+
+def reachable_postures(arm: Arm, seed: int, count: int) -> FloatArray:
+    """(count, n_free) postures with all joints, driven ones too, within their limits, drawn from 40 times as many."""
+    free = random_postures(arm, seed, 40 * count)
+    joints = arm.complete(free)
+    kept = free[((joints >= arm.minimum) & (joints <= arm.maximum)).all(axis=1)]
+    assert len(kept) >= count
+    return kept[:count]
