@@ -15,12 +15,14 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.arms.kinematics import kinematics_of
 from planner.arms.posture_field import PostureField, posture_field, within_limits
+from planner.arms.projection import project
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import PlanError
 from planner.settings import CanvasKind
 
 _GRID_CELLS = 160
 _RADIAL_STEPS = 600
+_HEIGHTS = 7
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,9 +148,10 @@ class _Sector:
         arm = field.arm
         radii = np.linspace(field.radii_mm[0], field.radii_mm[-1], _RADIAL_STEPS)
         low, high = np.full(len(radii), -np.pi / 2), np.full(len(radii), np.pi / 2)
-        for height in np.linspace(0.0, lift_mm, 4):
-            free, _ = field.postures_at(np.column_stack((radii, np.zeros_like(radii), np.full_like(radii, height))))
-            good = within_limits(arm, free, first_joint=False)
+        for height in np.linspace(0.0, lift_mm, _HEIGHTS):
+            tips = np.column_stack((radii, np.zeros_like(radii), np.full_like(radii, height)))
+            free, exact = project(kinematics_of(arm), field.reference(tips), tips)
+            good = exact & within_limits(arm, free, first_joint=False)
             low = np.where(good, np.maximum(low, arm.minimum[0] - free[:, 0]), np.inf)
             high = np.where(good, np.minimum(high, arm.maximum[0] - free[:, 0]), -np.inf)
         return _Sector(radii, low, high)
