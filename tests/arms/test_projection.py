@@ -66,7 +66,7 @@ def test_a_reference_on_target_is_its_own_projection(arm: Arm, seed: int) -> Non
 def test_targets_are_independent_of_each_other(arm: Arm) -> None:
     kinematics = kinematics_of(arm)
     reference = reachable_postures(arm, 5, 30)
-    target = kinematics.tip_mm(reference) + [1.0, -2.0, 0.5]
+    target = kinematics.tip_mm(reference) + np.array([1.0, -2.0, 0.5])
     together, _ = project(kinematics, reference, target)
     for index in (0, 11, 29):
         alone, _ = project(kinematics, reference[index:index + 1], target[index:index + 1])
