@@ -16,14 +16,17 @@ import casadi
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
-from planner.arms.arm import Arm, JointKind
+from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.kinematics import Kinematics, kinematics_of
 from planner.arms.projection import joint_scale, project
-from planner.arrays import BoolArray, FloatArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.errors import PlanError
 
 _COARSE_STEP_MM = 6.0
 _SAMPLES = 160
+_SAMPLING_ROUNDS = (12, 40, 40, 80)
+"""Iterations of the projection in each round of sampling; later rounds only where earlier ones found few."""
+_FEW = 25
 _NODES = 49
 _EDGE_MM = 1.0
 """The field is laid out over sqrt(outer + this - rho): near the stretched arm postures go with that root."""
@@ -77,11 +80,16 @@ def within_limits(arm: Arm, free: FloatArray, slack: float = 1e-9, first_joint: 
 
 
 def slowest_direction_mm_s(kinematics: Kinematics, free: FloatArray) -> FloatArray:
-    """(n,) tip speed that is possible in every direction with joint speeds of unit norm in units of their
-    limits: the smallest singular value of J diag(speed). Zero at a singular posture."""
+    """(n,) tip speed that is possible in every direction, with the pen held as it is held and joint speeds of unit
+    norm in units of their limits: the smallest singular value of the tip's J diag(speed), restricted to motions
+    that do not turn the tool axis. Zero at a singular posture."""
     _, jacobian = kinematics.task_and_jacobian(free)
-    singular: FloatArray = np.asarray(np.linalg.svd(jacobian * joint_scale(kinematics), compute_uv=False))
-    return singular[:, -1]
+    jacobian = jacobian * joint_scale(kinematics)
+    tip, pointing = jacobian[:, :3], jacobian[:, 3:]
+    if pointing.shape[1]:
+        tip = tip - tip @ np.linalg.pinv(pointing) @ pointing
+    singular: FloatArray = np.asarray(np.linalg.svd(tip, compute_uv=False))
+    return singular[:, 2]
 
 
 @lru_cache(maxsize=16)
@@ -90,6 +98,9 @@ def posture_field(arm: Arm) -> PostureField:
     first = arm.joints[0]
     if first.kind is not JointKind.REVOLUTE or 0 not in arm.free_joints:
         raise PlanError(f"arm {arm.name}: method 'path' needs a first joint that turns about the vertical axis")
+    if any(other == 0 for coupling in arm.couplings for other, _ in coupling.coefficients):
+        raise PlanError(f"arm {arm.name}: joint {first.name} turns the arm about the vertical axis;"
+                        " no coupling may depend on it")
     kinematics = kinematics_of(arm)
     radii, samples = _sampled_rays(kinematics)
     course = _coarse_course(kinematics, radii, samples)
@@ -116,6 +127,8 @@ def _usable(kinematics: Kinematics, free: FloatArray) -> BoolArray:
     clear = slowest_direction_mm_s(kinematics, free) >= arm.workspace.min_tip_speed_mm_s
     above = (kinematics.nodes_mm(free)[:, :-1, 2] >= -1e-6).all(axis=1)
     usable: BoolArray = inside & clear & above
+    if arm.pen.hold is PenHold.TOOL_AXIS:
+        usable &= kinematics.tool_axis(free)[:, 2] < -0.5  # the task alone would let the pen point straight up
     return usable
 
 
@@ -124,23 +137,44 @@ def _on_ray(radii_mm: FloatArray) -> FloatArray:
 
 
 def _sampled_rays(kinematics: Kinematics) -> tuple[FloatArray, list[FloatArray]]:
-    """Usable postures at each of some radii: random postures, projected onto the target."""
+    """Usable postures at each of some radii: random postures projected onto the target, then those found at
+    one radius carried on to its neighbours where few were found."""
     arm = kinematics.arm
     radii = np.arange(arm.workspace.inner_radius_mm, _longest_reach_mm(arm), _COARSE_STEP_MM)
     random = np.random.default_rng(20220601)  # any seed will do; the same one always, for the same field
     low, high = kinematics.free_of(arm.minimum), kinematics.free_of(arm.maximum)
-    start = random.uniform(low, high, (len(radii) * _SAMPLES, kinematics.n_free))
-    targets = _on_ray(np.repeat(radii, _SAMPLES))
-    # Turn each sample about the base so that its tip already lies on the ray.
-    tips = kinematics.tip_mm(start)
-    start[:, 0] -= np.arctan2(tips[:, 1], tips[:, 0])
-    found, exact = project(kinematics, start, targets, iterations=12)
+    pools: list[FloatArray] = [np.empty((0, kinematics.n_free)) for _ in radii]
+    for iterations in _SAMPLING_ROUNDS:
+        poor = np.flatnonzero(np.array([len(pool) for pool in pools]) < _FEW)
+        start = random.uniform(low, high, (len(poor) * _SAMPLES, kinematics.n_free))
+        # Turn each sample about the base so that its tip already lies on the ray.
+        tips = kinematics.tip_mm(start)
+        start[:, 0] -= np.arctan2(tips[:, 1], tips[:, 0])
+        _add_usable(kinematics, pools, np.repeat(poor, _SAMPLES), start, radii, iterations)
+        if sum(len(pool) >= _FEW for pool in pools) >= 3:
+            break
+    for order in (range(1, len(radii)), range(len(radii) - 2, -1, -1)):
+        for index in order:
+            neighbour = pools[index - order.step][:_SAMPLES]
+            if len(pools[index]) < _FEW and len(neighbour):
+                _add_usable(kinematics, pools, np.full(len(neighbour), index), neighbour, radii, 12)
+    return radii, pools
+
+
+def _add_usable(kinematics: Kinematics, pools: list[FloatArray], rays: IntArray, start: FloatArray, radii: FloatArray,
+                iterations: int) -> None:
+    """Project postures onto the rays they are meant for, and add what is usable to the rays' pools."""
+    found, exact = project(kinematics, start, _on_ray(radii[rays]), iterations=iterations)
+    found, rays = found[exact], rays[exact]
+    turning = np.array([kinematics.arm.joints[joint].kind is JointKind.REVOLUTE for joint in kinematics.arm.free_joints])
+    if not kinematics.arm.couplings:  # whole turns mean nothing where no other joint counts them
+        middle = kinematics.free_of((kinematics.arm.minimum + kinematics.arm.maximum) / 2)
+        turns = np.round((found - middle) / (2 * np.pi)) * turning
+        found = found - 2 * np.pi * turns
     found[:, 0] = (found[:, 0] + np.pi) % (2 * np.pi) - np.pi
-    good = exact.copy()
-    good[exact] = _usable(kinematics, found[exact])
-    good = good.reshape(len(radii), _SAMPLES)
-    found = found.reshape(len(radii), _SAMPLES, -1)
-    return radii, [postures[mask] for postures, mask in zip(found, good, strict=True)]
+    usable = _usable(kinematics, found)
+    for ray in np.unique(rays[usable]).tolist():
+        pools[ray] = np.concatenate((pools[ray], found[usable & (rays == ray)]))
 
 
 def _centredness(arm: Arm, free: FloatArray) -> FloatArray:
