@@ -16,11 +16,15 @@ from planner.arms.compiled import CompiledFunction
 from planner.arrays import FloatArray
 
 
+_PROBES = 32
+
+
 class Kinematics:
     """Forward kinematics, Jacobians and the task of one arm, as functions of its free joints.
 
     The task is what a posture has to meet at a pen target: the tip's place (3 rows, mm) and, where the
-    tool axis has to point down, the two horizontal components of that axis (which have to be zero).
+    tool axis has to point down, its horizontal components (which have to be zero), seen from the turning base.
+    An axis that stays in a plane with the base axis by construction has only one of them.
     """
 
     def __init__(self, arm: Arm) -> None:
@@ -32,8 +36,18 @@ class Kinematics:
         last = self.frames[-1]
         self.tip = last[:3, 3]
         self.axis = last[:3, :3] @ casadi.DM(arm.pen.tool_axis)
-        self.task = casadi.vertcat(self.tip, self.axis[:2]) if arm.pen.hold is PenHold.TOOL_AXIS else self.tip
+        self.task = casadi.vertcat(self.tip, *self._pointing()) if arm.pen.hold is PenHold.TOOL_AXIS else self.tip
         self.nodes = casadi.horzcat(*corners).T
+
+    def _pointing(self) -> list[casadi.SX]:
+        """The horizontal components of the tool axis that vary at all."""
+        turn = self.joints[0] if self.arm.joints[0].kind is JointKind.REVOLUTE else 0
+        c, s = casadi.cos(turn), casadi.sin(turn)
+        components = casadi.vertcat(c * self.axis[0] + s * self.axis[1], c * self.axis[1] - s * self.axis[0])
+        probe = casadi.Function("probe", [self.free], [components])
+        postures = np.random.default_rng(0).uniform(-np.pi, np.pi, (self.n_free, _PROBES))
+        spread = np.ptp(np.array(probe.map(_PROBES)(postures)), axis=1)
+        return [components[row] for row in range(2) if spread[row] > 1e-9]
 
     @property
     def n_free(self) -> int:
@@ -55,6 +69,10 @@ class Kinematics:
     @cached_property
     def _tip(self) -> CompiledFunction:
         return CompiledFunction("tip", [self.free], [self.tip])
+
+    @cached_property
+    def _axis(self) -> CompiledFunction:
+        return CompiledFunction("axis", [self.free], [self.axis])
 
     @cached_property
     def _nodes(self) -> CompiledFunction:
@@ -87,6 +105,10 @@ class Kinematics:
     def tip_mm(self, free: FloatArray) -> FloatArray:
         """Pen tip (n, 3), mm, of postures (n, n_free)."""
         return self._tip(free)[0]
+
+    def tool_axis(self, free: FloatArray) -> FloatArray:
+        """Unit vector (n, 3) out of the nib, in the base frame, of postures (n, n_free)."""
+        return self._axis(free)[0]
 
     def nodes_mm(self, free: FloatArray) -> FloatArray:
         """Corners of the link chain (n, n_nodes, 3), mm, from the first joint to the tip."""

@@ -23,9 +23,8 @@ from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.errors import PlanError
 
 _COARSE_STEP_MM = 6.0
-_SAMPLES = 160
-_SAMPLING_ROUNDS = (12, 40, 40, 80)
-"""Iterations of the projection in each round of sampling; later rounds only where earlier ones found few."""
+_DRAWN = 20_000
+_SAMPLES = 120
 _FEW = 25
 _NODES = 49
 _EDGE_MM = 1.0
@@ -110,20 +109,12 @@ def posture_field(arm: Arm) -> PostureField:
     return _polished(kinematics, *_stretched_to_edges(kinematics, *course))
 
 
-def _longest_reach_mm(arm: Arm) -> float:
-    reach = 0.0
-    for joint in arm.joints:
-        travel = 0.0 if joint.kind is JointKind.REVOLUTE else max(abs(joint.minimum), abs(joint.maximum))
-        reach += float(np.hypot(abs(joint.d_mm) + travel, joint.a_mm))
-    return reach
-
-
 def _usable(kinematics: Kinematics, free: FloatArray) -> BoolArray:
-    """(n,) whether postures keep limits with a margin, stay clear of singularities and above the paper."""
+    """(n,) whether postures on the ray keep limits with a margin, stay clear of singularities and above the paper."""
     arm = kinematics.arm
     joints = arm.complete(free)
     room = _LIMIT_MARGIN * (arm.maximum - arm.minimum)
-    inside = ((joints >= arm.minimum + room) & (joints <= arm.maximum - room))[:, 1:].all(axis=1)
+    inside = ((joints >= arm.minimum + room) & (joints <= arm.maximum - room)).all(axis=1)
     clear = slowest_direction_mm_s(kinematics, free) >= arm.workspace.min_tip_speed_mm_s
     above = (kinematics.nodes_mm(free)[:, :-1, 2] >= -1e-6).all(axis=1)
     usable: BoolArray = inside & clear & above
@@ -137,22 +128,25 @@ def _on_ray(radii_mm: FloatArray) -> FloatArray:
 
 
 def _sampled_rays(kinematics: Kinematics) -> tuple[FloatArray, list[FloatArray]]:
-    """Usable postures at each of some radii: random postures projected onto the target, then those found at
-    one radius carried on to its neighbours where few were found."""
+    """Usable postures at each of some radii: the random postures that come closest are projected onto the ray, and
+    those found at one radius are carried on to its neighbours where few were found."""
     arm = kinematics.arm
-    radii = np.arange(arm.workspace.inner_radius_mm, _longest_reach_mm(arm), _COARSE_STEP_MM)
     random = np.random.default_rng(20220601)  # any seed will do; the same one always, for the same field
     low, high = kinematics.free_of(arm.minimum), kinematics.free_of(arm.maximum)
+    drawn = random.uniform(low, high, (_DRAWN, kinematics.n_free))
+    task, _ = kinematics.task_and_jacobian(drawn)
+    drawn[:, 0] -= np.arctan2(task[:, 1], task[:, 0])  # turned about the base so that the tip is above the ray
+    if arm.pen.hold is PenHold.TOOL_AXIS:
+        downward = kinematics.tool_axis(drawn)[:, 2] < 0
+        drawn, task = drawn[downward], task[downward]
+    reach, height = np.hypot(task[:, 0], task[:, 1]), task[:, 2]
+    tilt = np.abs(task[:, 3:]).sum(axis=1)
+    longest = float(reach.max(initial=0.0)) + _COARSE_STEP_MM
+    radii = np.arange(arm.workspace.inner_radius_mm, max(longest, arm.workspace.inner_radius_mm + 1), _COARSE_STEP_MM)
+    count = min(_SAMPLES, len(drawn))
+    closest = [np.argpartition(np.hypot(reach - radius, height) / longest + tilt, count - 1)[:count] for radius in radii]
     pools: list[FloatArray] = [np.empty((0, kinematics.n_free)) for _ in radii]
-    for iterations in _SAMPLING_ROUNDS:
-        poor = np.flatnonzero(np.array([len(pool) for pool in pools]) < _FEW)
-        start = random.uniform(low, high, (len(poor) * _SAMPLES, kinematics.n_free))
-        # Turn each sample about the base so that its tip already lies on the ray.
-        tips = kinematics.tip_mm(start)
-        start[:, 0] -= np.arctan2(tips[:, 1], tips[:, 0])
-        _add_usable(kinematics, pools, np.repeat(poor, _SAMPLES), start, radii, iterations)
-        if sum(len(pool) >= _FEW for pool in pools) >= 3:
-            break
+    _add_usable(kinematics, pools, np.repeat(np.arange(len(radii)), count), drawn[np.concatenate(closest)], radii, 20)
     for order in (range(1, len(radii)), range(len(radii) - 2, -1, -1)):
         for index in order:
             neighbour = pools[index - order.step][:_SAMPLES]
@@ -178,10 +172,10 @@ def _add_usable(kinematics: Kinematics, pools: list[FloatArray], rays: IntArray,
 
 
 def _centredness(arm: Arm, free: FloatArray) -> FloatArray:
-    """(n,) mean square distance of the joints but the first from the middle of their ranges, 1 at the limits."""
+    """(n,) mean square distance of the joints from the middle of their ranges, 1 at the limits."""
     joints = arm.complete(free)
     middle, half = (arm.maximum + arm.minimum) / 2, (arm.maximum - arm.minimum) / 2
-    cost: FloatArray = (((joints - middle) / half)[:, 1:] ** 2).sum(axis=1) / max(arm.n_joints - 1, 1)
+    cost: FloatArray = (((joints - middle) / half) ** 2).mean(axis=1)
     return cost
 
 
@@ -262,7 +256,7 @@ def _polished(kinematics: Kinematics, radii: FloatArray, postures: FloatArray) -
     spread = (joints - casadi.repmat(casadi.DM(middle), 1, _NODES)) / casadi.repmat(casadi.DM(half), 1, _NODES)
     step = (q[:, 1:] - q[:, :-1]) / casadi.repmat(casadi.DM(scale), 1, _NODES - 1)
     bend = step[:, 1:] - step[:, :-1]
-    objective = (casadi.sumsqr(spread[1:, :]) / _NODES
+    objective = (casadi.sumsqr(spread) / _NODES
                  + 20.0 * _NODES * casadi.sumsqr(step) + 2.0 * _NODES ** 3 * casadi.sumsqr(bend))
     tasks = casadi.horzcat(*[task(q[:, k]) for k in range(_NODES)])
     others = joints[1:, :]
