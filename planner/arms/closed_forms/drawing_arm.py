@@ -12,13 +12,29 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-from planner.arms.arm import Arm
+from planner.arms.arm import Arm, JointKind
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import PlanError
 
 _PITCHES = np.radians(np.linspace(-180, 180, 721))
 _RADII = 120
 _DEGREE = 8
+
+
+def fits(arm: Arm) -> bool:
+    """Whether the chain is of this family: five turning joints with DH rows (L1, 0, 90 degrees), then links in
+    one plane, and the last held upright by q5 = -90 degrees - q2 - q3 - q4."""
+    rows = np.array([(joint.theta_rad, joint.alpha_rad) for joint in arm.joints])
+    expected = np.zeros_like(rows)
+    expected[0, 1] = np.pi / 2
+    if arm.n_joints != 5 or any(joint.kind is not JointKind.REVOLUTE for joint in arm.joints):
+        return False
+    if arm.joints[0].a_mm != 0.0 or not np.allclose(rows, expected, rtol=0.0, atol=1e-12):
+        return False
+    if arm.free_joints != (0, 1, 2, 3):
+        return False
+    matrix, constant = arm.coupling_matrix
+    return bool(np.allclose(matrix[4], [0, -1, -1, -1]) and np.isclose(constant[4], -np.pi / 2))
 
 
 def postures(arm: Arm, tip_mm: FloatArray, pitch_rad: FloatArray) -> tuple[FloatArray, FloatArray]:
