@@ -25,7 +25,7 @@ def fit_to_canvas(low_mm: FloatArray, high_mm: FloatArray, canvas: Canvas, *, ma
                          f" {canvas.width_mm:.1f} x {canvas.height_mm:.1f} mm")
     factor = 1.0
     if scale:
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", over="ignore"):
             factor = float(np.min(room / size))
         if not np.isfinite(factor):
             factor = 1.0  # a single dot has no size to scale
