@@ -1,0 +1,69 @@
+"""Clipping keeps what is reachable, to within its step, and counts what it leaves out."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from planner.arrays import BoolArray, FloatArray
+from planner.placement.clip import clip_strokes
+
+STEP_MM = 0.25
+INNER_MM, OUTER_MM = 33.0, 140.0
+
+place = st.tuples(st.floats(-200, 200), st.floats(-200, 200))
+strokes_made = st.lists(st.lists(place, min_size=1, max_size=6, unique=True).map(np.array), min_size=1, max_size=4)
+
+
+def in_ring(points_mm: FloatArray) -> BoolArray:
+    radius = np.hypot(*points_mm.T)
+    inside: BoolArray = (radius >= INNER_MM) & (radius <= OUTER_MM)
+    return inside
+
+
+def ring(wider_mm: float) -> shapely.Geometry:
+    origin = shapely.Point(0, 0)
+    return origin.buffer(OUTER_MM + wider_mm, 64).difference(origin.buffer(INNER_MM - wider_mm, 64))
+
+
+WIDER, NARROWER = ring(2 * STEP_MM), ring(-STEP_MM)
+
+
+@settings(deadline=None, max_examples=30)
+@given(strokes_made)
+def test_what_is_kept_is_the_part_within_reach(strokes: list[FloatArray]) -> None:
+    kept, lost_mm, lost_whole = clip_strokes(strokes, in_ring)
+    lines = [shapely.LineString(stroke) for stroke in strokes if len(stroke) > 1]
+    kept_lines = [shapely.LineString(stroke) for stroke in kept if len(stroke) > 1]
+    everything, rest = shapely.union_all(lines), shapely.union_all(kept_lines)
+    assert all(in_ring(stroke).all() for stroke in kept)
+    if kept_lines:
+        assert rest.difference(everything.buffer(1e-6, 2)).length < 1e-9  # nothing new
+        assert rest.difference(WIDER).length < 1e-9  # nothing out of reach
+    missing = everything.intersection(NARROWER).difference(rest.buffer(1.5 * STEP_MM, 4))
+    assert missing.length < 1e-6  # nothing left out that is well within
+    total_mm = sum(line.length for line in lines)
+    np.testing.assert_allclose(lost_mm + sum(line.length for line in kept_lines), total_mm, atol=1e-8)
+    assert lost_whole <= len(strokes) <= len(kept) + lost_whole
+
+
+def test_a_stroke_within_reach_is_left_as_it_is() -> None:
+    stroke = np.array([[50.0, 0.0], [60.0, 10.0]])
+    kept, lost_mm, lost_whole = clip_strokes([stroke], in_ring)
+    assert kept[0] is stroke and (lost_mm, lost_whole) == (0.0, 0)
+
+
+def test_a_stroke_across_the_hole_becomes_two() -> None:
+    kept, lost_mm, lost_whole = clip_strokes([np.array([[-60.0, 0.0], [60.0, 0.0]])], in_ring)
+    assert lost_whole == 0 and [len(run) > 1 for run in kept] == [True, True]
+    np.testing.assert_allclose(np.abs([kept[0][[0, -1], 0], kept[1][::-1][[0, -1], 0]]),
+                               [[60.0, 33.0]] * 2, atol=STEP_MM)
+    assert abs(lost_mm - 66.0) < 2 * STEP_MM
+
+
+def test_taps_are_kept_or_lost_whole() -> None:
+    near, far = np.array([[50.0, 0.0]]), np.array([[500.0, 0.0]])
+    kept, lost_mm, lost_whole = clip_strokes([near, far], in_ring)
+    assert kept == [near] and (lost_mm, lost_whole) == (0.0, 1)
