@@ -47,8 +47,9 @@ def test_forward_kinematics_undoes_it_on_both_elbows(arm: Arm, seed: int) -> Non
 
 
 @settings(deadline=None)
-@given(upper=st.floats(30, 70), fore=st.floats(30, 70), distance=st.floats(0.5, 200), direction=st.floats(-np.pi, np.pi),
-       pitch=st.floats(-np.pi, np.pi), azimuth=st.floats(-1.5, 1.5), offset=st.floats(-30, 30), l5=st.floats(20, 60))
+@given(upper=st.floats(30, 70), fore=st.floats(30, 70), distance=st.floats(0.5, 200),
+       direction=st.floats(-np.pi, np.pi), pitch=st.floats(-np.pi, np.pi), azimuth=st.floats(-1.5, 1.5),
+       offset=st.floats(-30, 30), l5=st.floats(20, 60))
 def test_the_gap_is_what_is_missing_of_the_triangle(
         upper: float, fore: float, distance: float, direction: float, pitch: float, azimuth: float, offset: float,
         l5: float) -> None:
