@@ -53,11 +53,12 @@ class NlpSolver:
             iterations += int(statistics["iter_count"])
             solution = np.array(found["x"]).ravel()
             values = np.array(found["g"]).ravel()
-            miss = float(np.abs(values[:len(target)] - target).max())
+            miss = values[:len(target)] - target
+            error_mm = float(np.linalg.norm(miss[:3]))
             outside = float(np.maximum(bounds["lbg"] - values, values - bounds["ubg"])[len(target):].max())
-            if statistics["success"] and miss < _TOLERANCE_MM and outside < 1e-6:
-                return solution, True, iterations, miss
-        return solution, False, iterations, miss
+            if statistics["success"] and np.abs(miss).max() < _TOLERANCE_MM and outside < 1e-6:
+                return solution, True, iterations, error_mm
+        return solution, False, iterations, error_mm
 
 
 @lru_cache(maxsize=16)
@@ -69,14 +70,14 @@ def nlp_solver(arm: Arm) -> NlpSolver:
 def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray) -> Solutions:
     """Targets (n, 3) one after the other from free joints (n_free,), each near the one before."""
     solver = nlp_solver(arm)
-    postures, converged, iterations, errors = [], [], [], []
+    n_targets = len(targets_mm)
+    postures = np.empty((n_targets, len(start)))
+    converged = np.zeros(n_targets, dtype=bool)
+    iterations = np.zeros(n_targets, dtype=np.int64)
+    error_mm = np.empty(n_targets)
     before = start
-    for target in targets_mm:
-        posture, good, count, miss = solver.solve(target, before)
-        if good:
-            before = posture
-        postures.append(posture)
-        converged.append(good)
-        iterations.append(count)
-        errors.append(miss)
-    return Solutions(np.array(postures), np.array(converged), np.array(iterations), np.array(errors))
+    for index, target in enumerate(targets_mm):
+        postures[index], converged[index], iterations[index], error_mm[index] = solver.solve(target, before)
+        if converged[index]:
+            before = postures[index]
+    return Solutions(postures, converged, iterations, error_mm)
