@@ -38,7 +38,10 @@ _SIMPSON = np.array([1.0, 4.0, 1.0]) / 6
 _GAP = 1e-3
 """Iteration stops where the barrier can still save less than this share of a path's time."""
 _BOUNDARY = 0.95
-_CENTRING = 0.15
+_CENTRING = 0.4
+_START_GAP = 1.0
+"""Barrier at the start and its decrease with every step. A smaller one lets slacks run dry far from the optimum:
+steps then stay short, and the gap closes before the gradient does."""
 _START_SLOPE = 0.25
 _COMPACT_BELOW = 0.7
 """Paths that are done leave the working set once fewer than this share of its cells is still being improved."""
@@ -287,7 +290,7 @@ class _State:
     def starting(solver: _Solver, b: FloatArray) -> _State:
         values = solver.values(b)
         slacks = solver.slacks(values)
-        mu = (0.1 * solver.times_s(values[0]) / solver.n_limits)[solver.path_of_cell]
+        mu = (_START_GAP * solver.times_s(values[0]) / solver.n_limits)[solver.path_of_cell]
         return _State.of(solver, b, values[0], slacks, [mu / slack for slack in slacks])
 
     def subset(self, solver: _Solver, paths: BoolArray) -> _State:
