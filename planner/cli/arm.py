@@ -1,4 +1,4 @@
-"""`plan arm [NAME]`: the arms there are, or one of them."""
+"""`plan arm [NAME]`: the arms there are, one of them, or one of its postures."""
 
 from __future__ import annotations
 
@@ -7,20 +7,25 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from planner.cli.parser import Parser
+from planner.cli.quantities import angle_deg
 from planner.cli.terminal import print_lines
 from planner.errors import PlanError, UsageError
 
 if TYPE_CHECKING:
     from planner.arms.arm import Arm
+    from planner.arrays import FloatArray
 
 _DESCRIPTION = """\
-List the arms that come with the planner, or describe one: its Denavit-Hartenberg table, limits, couplings and pen."""
+List the arms that come with the planner, or describe one: its Denavit-Hartenberg table, limits, couplings and pen.
+With --at, describe a posture of it: the pen's pose, the Jacobian, which motion is internal, which velocity
+impossible, and how far the tip strays where a joint is off."""
 
 _EPILOG = """\
 examples:
   plan arm
   plan arm drawing_arm
-  plan arm my_arm.toml --json"""
+  plan arm my_arm.toml --json
+  plan arm scara --at 0 90 -120 -90 --frame 2"""
 
 
 def arm(arguments: list[str]) -> int:
@@ -28,18 +33,28 @@ def arm(arguments: list[str]) -> int:
     parser = Parser("plan arm", _DESCRIPTION, _EPILOG)
     parser.add_argument("arm", nargs="?", metavar="NAME|FILE")
     parser.add_argument("--json", action="store_true", help="print the description as JSON")
+    parser.add_argument("--at", nargs="+", type=angle_deg, metavar="Q",
+                        help="describe this posture: a position for each joint (deg, or mm where it slides), or for "
+                             "each that no coupling drives")
+    parser.add_argument("--frame", metavar="K", help="with --at: the frame that the Jacobian is expressed in, "
+                        "base, tool or the number of one between (default: base)")
     options = parser.parse_args(arguments)
 
     from planner.arms.arm_file import known_arms, load_arm
     from planner.arms.description import arm_description
 
     if options.arm is None:
-        if options.json:
-            raise UsageError("--json describes one arm: name it (see plan arm)")
+        for given, option in ((options.json, "--json"), (options.at, "--at"), (options.frame, "--frame")):
+            if given:
+                raise UsageError(f"{option} describes one arm: name it (see plan arm)")
         known = [load_arm(name) for name in known_arms()]
         print_lines(_columns([(one.name, f"{one.n_joints} joints", one.source) for one in known]))
         return 0
     described = load_arm(options.arm)
+    if options.at is not None:
+        return _posture(described, options.at, options.frame or "base", as_json=options.json)
+    if options.frame is not None:
+        raise UsageError("--frame goes with --at")
     paper, obstacle = _paper(described)
     description = arm_description(described) | paper
     if options.json:
@@ -47,6 +62,30 @@ def arm(arguments: list[str]) -> int:
     else:
         print_lines([f"{described.name}: {described.source}", "", *_table(description, obstacle)])
     return 0
+
+
+def _posture(arm: Arm, positions: Sequence[float], frame: str, *, as_json: bool) -> int:
+    from planner.arms.posture_description import posture_description, posture_lines
+
+    numbers = {"base": 0, "tool": arm.n_joints} | {str(index): index for index in range(arm.n_joints + 1)}
+    if frame not in numbers:
+        raise UsageError(f"--frame {frame}: arm '{arm.name}' has base, tool and 0 to {arm.n_joints}")
+    posture = posture_description(arm, _all_joints(arm, positions), numbers[frame])
+    print_lines([json.dumps(posture, indent=2)] if as_json else [f"{arm.name}: {arm.source}", "",
+                                                                 *posture_lines(arm, posture)])
+    return 0
+
+
+def _all_joints(arm: Arm, positions: Sequence[float]) -> FloatArray:
+    """(n_joints,) rad or mm, of positions in the units of files; couplings fill in what is not given."""
+    free = list(arm.free_joints)
+    if len(positions) == arm.n_joints:
+        return arm.from_file_units(positions)
+    if len(positions) == len(free):
+        return arm.complete(positions * arm.per_file_unit[free])
+    least = f"{len(free)} or " if len(free) < arm.n_joints else ""
+    raise UsageError(f"--at: arm '{arm.name}' has {least}{arm.n_joints} positions to give "
+                     f"({', '.join(joint.name for joint in arm.joints)}), not {len(positions)}")
 
 
 def _paper(arm: Arm) -> tuple[dict[str, Any], str]:
