@@ -125,7 +125,7 @@ class _WorkspaceSection(_Section):
 class _ArmSection(_Section):
     name: Name
     source: str
-    closed_form: Literal["drawing_arm"] | None = None
+    closed_form: Literal["drawing_arm", "scara", "three_joint", "six_joint", "stanford"] | None = None
     pen: _PenSection
     workspace: _WorkspaceSection
     joints: Annotated[

@@ -1,108 +1,79 @@
 """Closed form of the drawing arm: a turning base, three parallel joints, and a link that hangs upright.
 
-With the pen vertical the end of link 4 is right above the tip, so given the pitch phi = q2 + q3 + q4 of link 4
-the end of link 3 is known and q2, q3 follow from a triangle, elbow up or down. The pitch is the
-arm's redundancy (documents on the drawing arm, inverse kinematics; here with a lateral offset of the pen).
+The coupling holds the last link's direction, so the end of link 4 is known from the tip. Given the pitch
+phi = q2 + q3 + q4 of link 4, the arm's redundancy, the end of link 3 is known too, and q2, q3 follow from a
+triangle (documents on the drawing arm, inverse kinematics; here with lateral offsets and joint offsets).
+Branches: in front and over its back, each with the elbow angle q3 above and below 0.
 """
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
-from numpy.polynomial import Chebyshev
 
-from planner.arms.arm import Arm, JointKind
+from planner.arms.arm import Arm
+from planner.arms.closed_forms.branches import ELBOWS, Branches, solve_in_blocks
+from planner.arms.closed_forms.dh_rows import Row, require_rows, sign_of_twist
+from planner.arms.closed_forms.two_links import two_links
+from planner.arms.closed_forms.waist import face
 from planner.arrays import BoolArray, FloatArray
-from planner.errors import PlanError
+from planner.errors import ArmFileError
 
-_PITCHES = np.radians(np.linspace(-180, 180, 721))
-_RADII = 120
-_DEGREE = 8
-
-
-def fits(arm: Arm) -> bool:
-    """Whether the chain is of this family: five turning joints with DH rows (L1, 0, 90 degrees), then links in
-    one plane, and the last held upright by q5 = -90 degrees - q2 - q3 - q4."""
-    rows = np.array([(joint.theta_rad, joint.alpha_rad) for joint in arm.joints])
-    expected = np.zeros_like(rows)
-    expected[0, 1] = np.pi / 2
-    if arm.n_joints != 5 or any(joint.kind is not JointKind.REVOLUTE for joint in arm.joints):
-        return False
-    if arm.joints[0].a_mm != 0.0 or not np.allclose(rows, expected, rtol=0.0, atol=1e-12):
-        return False
-    if arm.free_joints != (0, 1, 2, 3):
-        return False
-    matrix, constant = arm.coupling_matrix
-    return bool(np.allclose(matrix[4], [0, -1, -1, -1]) and np.isclose(constant[4], -np.pi / 2))
+_LINK = Row((0.0,), d="any", a="link")
+_ROWS = (Row((90.0, -90.0), d="any", a="any"), _LINK, _LINK, Row((0.0,), d="any", a="any"),
+         Row((0.0,), d="any", a="any"))
+N_BRANCHES = 4
 
 
-def postures(arm: Arm, tip_mm: FloatArray, pitch_rad: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Both postures for each tip and pitch, and how far beyond reach each is.
-
-    tip_mm: (n, 3); pitch_rad: (n,). Returns free joints (n, 2, 4), elbow up (q3 < 0) first, and gaps (n,) in
-    mm: 0 where the triangle closes, else the length that is missing; NaN postures there.
-    """
+def at_tip(arm: Arm, tip_mm: FloatArray, pitch_rad: FloatArray) -> Branches:
+    """All postures with the tip at (n, 3) and link 4 at the pitch (n,) from the horizontal, towards alpha of row 1.
+    Errors: ArmFileError where the rows are of another form."""
+    pen_direction = _pen_direction(arm)
     base, upper, fore, wrist, pen = arm.joints
-    x, y, z = tip_mm.T
-    offset = sum(joint.d_mm for joint in arm.joints[1:])
-    radial_squared = x * x + y * y - offset * offset
-    inside = np.sqrt(np.maximum(radial_squared, 0.0))
-    q1 = np.arctan2(y, x) + np.arctan2(offset, inside)
-    along = inside - wrist.a_mm * np.cos(pitch_rad)
-    up = z + pen.a_mm - base.d_mm - wrist.a_mm * np.sin(pitch_rad)
-    squared = along * along + up * up
-    cosine = (squared - upper.a_mm ** 2 - fore.a_mm ** 2) / (2 * upper.a_mm * fore.a_mm)
-    distance = np.sqrt(squared)
-    gap = np.maximum(distance - (upper.a_mm + fore.a_mm), abs(upper.a_mm - fore.a_mm) - distance)
-    gap = np.maximum(gap, np.where(radial_squared < 0, abs(offset) - np.hypot(x, y), 0.0))
-    bend = np.arccos(np.clip(cosine, -1.0, 1.0))
-    solutions = np.empty((len(tip_mm), 2, 4))
-    for k, q3 in enumerate((-bend, bend)):
-        q2 = np.arctan2(up, along) - np.arctan2(fore.a_mm * np.sin(q3), upper.a_mm + fore.a_mm * np.cos(q3))
-        solutions[:, k] = np.column_stack((q1, q2, q3, pitch_rad - q2 - q3))
-    # Angles near the limits' middle, rather than a turn away from it.
-    middle = ((arm.minimum + arm.maximum) / 2)[:4]
-    solutions = middle + (solutions - middle + np.pi) % (2 * np.pi) - np.pi
-    beyond = gap > 1e-9
-    solutions[beyond] = np.nan
-    return solutions, np.where(beyond, gap, 0.0)
+    twist = sign_of_twist(base)
+    left = -twist * sum(joint.d_mm for joint in arm.joints[1:])
+    ahead = base.a_mm + pen.a_mm * np.cos(pen_direction)
+    raised = pen.a_mm * np.sin(pen_direction)
+
+    def solve(block: slice, out: FloatArray) -> tuple[FloatArray, BoolArray]:
+        x, y, z = tip_mm[block].T
+        pitch = pitch_rad[block]
+        sides = face(x, y, left)
+        singular = sides.singular
+        gaps = []
+        inner = wrist.a_mm * np.cos(pitch)
+        inner += ahead
+        up = twist * (z - base.d_mm)
+        up -= raised
+        up -= wrist.a_mm * np.sin(pitch)
+        for side in range(2):
+            triangle = two_links(sides.along_mm[side] - inner, up, upper.a_mm, fore.a_mm)
+            singular = singular | triangle.singular
+            gap = np.maximum(sides.gap_mm, triangle.gap_mm)
+            gaps.append(gap)
+            unreachable = gap > 0.0
+            for elbow, rows in zip(ELBOWS, out[2 * side:2 * side + 2], strict=True):
+                np.subtract(sides.theta_rad[side], base.theta_rad, out=rows[0])
+                np.multiply(triangle.lead_rad, -elbow, out=rows[1])
+                rows[1] += triangle.direction_rad
+                np.multiply(triangle.bend_rad, elbow, out=rows[2])
+                np.subtract(pitch, rows[1], out=rows[3])
+                rows[3] -= rows[2]
+                rows[1] -= upper.theta_rad
+                rows[2] -= fore.theta_rad
+                rows[3] -= wrist.theta_rad
+                if unreachable.any():
+                    rows[:, unreachable] = np.nan
+        return np.minimum(*gaps), singular
+
+    return solve_in_blocks(arm, len(tip_mm), N_BRANCHES, solve)
 
 
-def centred_postures(arm: Arm, tip_mm: FloatArray) -> FloatArray:
-    """(n, 4) postures whose pitch lies midway between the joint limits at each tip's radius."""
-    elbow, pitch = _centred_pitch(arm)
-    found, _ = postures(arm, tip_mm, pitch(np.hypot(tip_mm[:, 0], tip_mm[:, 1])))
-    return found[:, elbow]
-
-
-@lru_cache(maxsize=16)
-def _centred_pitch(arm: Arm) -> tuple[int, Chebyshev]:
-    """The elbow with the wider choice, and the pitch as a smooth function of the radius on the paper: a
-    polynomial through the middle of the pitches that the joint limits allow."""
-    reach = sum(joint.a_mm for joint in arm.joints)
-    radii = np.linspace(arm.workspace.inner_radius_mm, reach, _RADII)
-    tips = np.zeros((len(radii) * len(_PITCHES), 3))
-    tips[:, 0] = np.repeat(radii, len(_PITCHES))
-    found, _ = postures(arm, tips, np.tile(_PITCHES, len(radii)))
-    joints = arm.complete(found)
-    with np.errstate(invalid="ignore"):
-        allowed = ((joints >= arm.minimum) & (joints <= arm.maximum))[..., 1:].all(axis=-1)
-    allowed = allowed.reshape(len(radii), len(_PITCHES), 2)
-    elbow = int(allowed.sum(axis=(0, 1)).argmax())
-    windows = [_widest_run(row) for row in allowed[:, :, elbow]]
-    reached = np.array([window is not None for window in windows])
-    if reached.sum() <= _DEGREE:
-        raise PlanError(f"arm {arm.name}: the closed form finds no posture within the joint limits on the paper")
-    middles = np.array([0.5 * (_PITCHES[window[0]] + _PITCHES[window[1]]) for window in windows if window])
-    return elbow, Chebyshev.fit(radii[reached], middles, _DEGREE)
-
-
-def _widest_run(allowed: BoolArray) -> tuple[int, int] | None:
-    """First and last index of the longest run of true values."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], allowed.astype(np.int8), [0]))))
-    if not len(edges):
-        return None
-    starts, ends = edges[0::2], edges[1::2] - 1
-    longest = int((ends - starts).argmax())
-    return int(starts[longest]), int(ends[longest])
+def _pen_direction(arm: Arm) -> float:
+    """Angle of the last link within the arm's plane, which the coupling holds: rad from the horizontal."""
+    require_rows(arm, "drawing_arm", _ROWS, coupled=True)
+    held = len(arm.couplings) == 1 and arm.couplings[0].joint == 4 and (
+        dict(arm.couplings[0].coefficients) == {1: -1.0, 2: -1.0, 3: -1.0})
+    if not held:
+        raise ArmFileError(f"arm {arm.name}", [
+            "coupling: the closed form 'drawing_arm' needs joint 5 coupled to joints 2, 3 and 4 by -1 each"])
+    return arm.couplings[0].constant_rad + sum(joint.theta_rad for joint in arm.joints[1:])
