@@ -45,6 +45,12 @@ class PostureField:
     radii_mm: FloatArray
     postures: FloatArray
 
+    @property
+    def home(self) -> FloatArray:
+        """(n_free,) the posture in the middle of the field: clear of limits and singularities."""
+        posture: FloatArray = self.postures[len(self.postures) // 2]
+        return posture
+
     @cached_property
     def _spline(self) -> BSpline:
         return make_interp_spline(self._coordinate(self.radii_mm)[::-1], self.postures[::-1], k=5)

@@ -22,29 +22,35 @@ from planner.arrays import FloatArray
 from planner.inverse_kinematics.result import Solutions
 
 MM_PER_CM = 10.0
+_LEVER_CM = 10.0
+"""What a radian of pointing counts for, in arms that have to point their tool axis. The documents' arm has none to
+point, its coupling does that, and their damping is far too strong for bare radians."""
 
 
 @dataclass(frozen=True, slots=True)
 class DlsSettings:
-    """Damping lambda^2 in cm^2, and the tolerances in the plane of the paper and across it."""
+    """Damping lambda^2 in cm^2, and the tolerances in the plane of the paper, across it, and of pointing."""
 
     lambda_squared: float = 50.0
     tolerance_xy_mm: float = 5.0
     tolerance_z_mm: float = 1.0
+    tolerance_tilt: float = 1e-2
     most_iterations: int = 2000
 
 
 DOCUMENTED = DlsSettings()
-FOR_DRAWING = DlsSettings(tolerance_xy_mm=0.01, tolerance_z_mm=0.01)
+FOR_DRAWING = DlsSettings(tolerance_xy_mm=0.01, tolerance_z_mm=0.01, tolerance_tilt=1e-3)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class DlsStep:
-    """One iteration: joints (n_joints,) before it, tip and error in mm, and the step to be added."""
+    """One iteration: joints (n_joints,) before it, tip and error in mm, sine of the tool axis' tilt where the arm has
+    to point it, and the step to be added."""
 
     joints: FloatArray
     tip_mm: FloatArray
     error_mm: FloatArray
+    tilt: float
     step: FloatArray
 
 
@@ -56,8 +62,8 @@ def iterate(arm: Arm, start: FloatArray, target_mm: FloatArray, lambda_squared: 
     joints, target = np.array(start, dtype=np.float64), np.asarray(target_mm, dtype=np.float64)
     damping = np.array([[lambda_squared]])
     while True:
-        (error,), (tip,), (change,) = step(joints[None], target[None], damping)
-        yield DlsStep(joints, tip, error, change)
+        (error,), (tip,), (change,), ((tilt,),) = step(joints[None], target[None], damping)
+        yield DlsStep(joints, tip, error, float(tilt), change)
         joints = matrix @ (joints + change)[free] + constant
 
 
@@ -76,7 +82,8 @@ def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, settings
         for count, state in enumerate(iterate(arm, joints, target, settings.lambda_squared)):
             joints = state.joints
             in_plane = float(np.hypot(*state.error_mm[:2]))
-            converged[index] = in_plane < settings.tolerance_xy_mm and abs(state.error_mm[2]) < settings.tolerance_z_mm
+            converged[index] = (in_plane < settings.tolerance_xy_mm and abs(state.error_mm[2]) < settings.tolerance_z_mm
+                                and state.tilt < settings.tolerance_tilt)
             if converged[index] or count >= settings.most_iterations:
                 break
         iterations[index] = count
@@ -92,9 +99,10 @@ def _dls_step(arm: Arm) -> CompiledFunction:
     target = casadi.SX.sym("target_mm", 3)
     damping = casadi.SX.sym("lambda_squared")
     tip, axis, jacobian = kinematics_of(arm).symbolic_jacobian(joints)
-    to_cm = casadi.diag(casadi.DM([1 / MM_PER_CM] * 3 + [1.0] * 3))
-    turn = casadi.cross(axis, casadi.DM([0, 0, -1])) if arm.pen.hold is PenHold.TOOL_AXIS else casadi.SX.zeros(3)
+    points = arm.pen.hold is PenHold.TOOL_AXIS
+    to_cm = casadi.diag(casadi.DM([1 / MM_PER_CM] * 3 + [_LEVER_CM if points else 1.0] * 3))
+    turn = casadi.cross(axis, casadi.DM([0, 0, -1])) if points else casadi.SX.zeros(3)
     error = target - tip
     scaled = to_cm @ jacobian
     step = scaled.T @ casadi.solve(scaled @ scaled.T + damping * casadi.SX.eye(6), to_cm @ casadi.vertcat(error, turn))
-    return CompiledFunction("dls", [joints, target, damping], [error, tip, step], block=1)
+    return CompiledFunction("dls", [joints, target, damping], [error, tip, step, casadi.norm_2(turn)], block=1)

@@ -80,11 +80,11 @@ def joint_paths(arm: Arm, method: Method, paths: PenPaths) -> tuple[JointPaths, 
 
 
 def _sequence(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
-    """Postures of targets solved one after the other, the first from the middle of the joint ranges."""
-    start = arm.complete(((arm.minimum + arm.maximum) / 2)[list(arm.free_joints)])
+    """Postures of targets solved one after the other, the first from the arm's home."""
+    home = posture_field(arm).home
     if method is Method.DLS:
-        return dls.solve_sequence(arm, tips_mm, start, dls.FOR_DRAWING).postures
-    return nlp.solve_sequence(arm, tips_mm, start[list(arm.free_joints)]).postures
+        return dls.solve_sequence(arm, tips_mm, arm.complete(home), dls.FOR_DRAWING).postures
+    return nlp.solve_sequence(arm, tips_mm, home).postures
 
 
 def _sequential_references(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
