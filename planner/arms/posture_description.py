@@ -21,7 +21,8 @@ def posture_description(arm: Arm, joints: FloatArray, in_frame: int = 0) -> dict
 
     joints: (n_joints,), rad or mm. jacobian: 6 rows, mm and rad per rad or mm, of the last frame seen from
     `in_frame`. internal_motion: steps of the joints, in degrees or mm, that leave those of its `rows` at rest.
-    impossible_velocity: weights of the Jacobian's rows whose sum is zero whatever the joints do. Errors: UsageError where the chain has no such frame.
+    impossible_velocity: weights of the Jacobian's rows whose sum is zero whatever the joints do.
+    Errors: UsageError where the chain has no such frame.
     """
     found = singularity(arm, joints, None, in_frame)
     frame = chain_frames(arm, joints[None])[0, -1]
@@ -79,7 +80,8 @@ def posture_lines(arm: Arm, posture: dict[str, Any]) -> list[str]:
     if posture["singular"]:
         lines.append("singular: " + ("; ".join(posture["shapes"]) or "in a way that no single joint tells"))
     resting = "pen" if any(row.startswith("w") for row in posture["rows"]) else "tip"
-    lines += [f"internal motion, the {resting} at rest: {_motion(motion, units)}" for motion in posture["internal_motion"]]
+    lines += [f"internal motion, the {resting} at rest: {_motion(motion, units)}"
+              for motion in posture["internal_motion"]]
     lines += [f"impossible, in frame {frame}: {_velocity(velocity)}" for velocity in posture["impossible_velocity"]]
     lines.append("tip error: " + ", ".join(f"{name} {value:.3g} mm/{units[name]}"
                                           for name, value in posture["tip_error_mm"].items())

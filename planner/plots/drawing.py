@@ -1,21 +1,16 @@
-"""The picture of the drawing: what the pen draws over what was wanted, on the paper in front of the arm.
-
-It is seen as by a person sitting behind the arm, on the side of its base: the base at the bottom, arm x
-up the picture and arm y to the left. So seated, the drawing reads as it does on a screen.
-"""
+"""The picture of the drawing: what the pen draws over what was wanted, on the paper in front of the arm."""
 
 from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon, Wedge
-from matplotlib.ticker import MultipleLocator
 
 from planner.arrays import BoolArray, FloatArray
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
-from planner.plots.look import BLUE, GREY, INK, PALE_ORANGE, planner_style, set_title
+from planner.plots.look import BLUE, GREY, PALE_ORANGE, planner_style, set_title
+from planner.plots.paper import canvas_outline, half_ring, place_axes, view_mm
 from planner.trajectory import Trajectory
 
 _FLATTEN_TOLERANCE_MM = 0.02  # well under a pixel
@@ -43,7 +38,7 @@ def plot_drawing(
     taps = _taps(trajectory, xy)
     wanted_line, wanted_taps = _wanted(trajectory, drawing)
     canvas = np.empty((0, 2)) if canvas_corners_mm is None else np.asarray(canvas_corners_mm, dtype=np.float64)
-    low, high = _view_mm([xy, wanted_line, canvas], reach_mm)
+    low, high = view_mm([xy, wanted_line, canvas], reach_mm)
     scale_in = (_WIDTH_IN - _LEFT_IN - _RIGHT_IN) / (high[1] - low[1])
     paper_in = min(max((high[0] - low[0]) * scale_in, 2.0), 12.0)
     height_in = _TOP_IN + paper_in + _BOTTOM_IN
@@ -51,7 +46,7 @@ def plot_drawing(
         figure = Figure(figsize=(_WIDTH_IN, height_in))
         axes = figure.add_axes((_LEFT_IN / _WIDTH_IN, _BOTTOM_IN / height_in,
                                 1 - (_LEFT_IN + _RIGHT_IN) / _WIDTH_IN, paper_in / height_in))
-        _place(axes, low, high)
+        place_axes(axes, low, high)
         _draw_paper(axes, canvas, reach_mm)
         _line(axes, wanted_line, "wanted", color=PALE_ORANGE, linewidth=1.4, zorder=2)
         _dots(axes, wanted_taps, "tap wanted", color=PALE_ORANGE, size=4.5, zorder=2)
@@ -61,7 +56,7 @@ def plot_drawing(
         remark = (f"{int(trajectory.stroke.max(initial=-1)) + 1} strokes, {_length_mm(drawn_line):.0f} mm drawn and "
                   f"{_length_mm(travel_line):.0f} mm travelled in {trajectory.duration_s:.4g} s "
                   f"on {trajectory.arm}, seen from behind its base")
-        set_title(figure, trajectory, remark, 0.2)
+        set_title(figure, trajectory.drawing or "trajectory", remark, 0.2)
         handles, labels = axes.get_legend_handles_labels()
         figure.legend(handles, labels, loc="upper left", ncols=len(handles), borderaxespad=0, handlelength=1.6,
                       columnspacing=1.4, bbox_to_anchor=(0.15 / _WIDTH_IN, 1 - 0.57 / height_in))
@@ -109,42 +104,11 @@ def _wanted(trajectory: Trajectory, drawing: Drawing | None) -> tuple[FloatArray
     return np.concatenate([empty, *lines]), np.concatenate([empty, *taps])
 
 
-def _view_mm(points: list[FloatArray], reach_mm: tuple[float, float] | None) -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest arm x and y to show: all points, the base and the half ring, and a margin."""
-    ring = [] if reach_mm is None else [np.array([[0.0, -reach_mm[1]], [reach_mm[1], reach_mm[1]]])]
-    everything = np.concatenate([*points, *ring, np.zeros((1, 2))])
-    low, high = np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)
-    margin = max(0.03 * float((high - low).max()), 5.0)
-    return low - margin, high + margin
-
-
-def _place(axes: Axes, low: FloatArray, high: FloatArray) -> None:
-    """Axes as seen from behind the base: horizontal is arm y, growing to the left; vertical is arm x."""
-    axes.set_xlim(high[1], low[1])
-    axes.set_ylim(low[0], high[0])
-    axes.set_aspect("equal", adjustable="box")
-    tick_mm = _tick_mm(float(high[1] - low[1]))
-    axes.xaxis.set_major_locator(MultipleLocator(tick_mm))
-    axes.yaxis.set_major_locator(MultipleLocator(tick_mm))
-    axes.set_xlabel("arm y (mm)")
-    axes.set_ylabel("arm x (mm)")
-    axes.plot(0.0, 0.0, linestyle="none", marker="^", markersize=8, color=INK, zorder=4, label="base of the arm")
-
-
-def _tick_mm(width_mm: float) -> float:
-    """1, 2 or 5 times a power of ten that divides the width into about ten."""
-    decade: float = 10.0 ** np.floor(np.log10(width_mm / 10))
-    return decade * min((1, 2, 5, 10), key=lambda step: abs(np.log(step * decade * 10 / width_mm)))
-
-
 def _draw_paper(axes: Axes, canvas: FloatArray, reach_mm: tuple[float, float] | None) -> None:
     if reach_mm is not None:
-        inner, outer = reach_mm
-        axes.add_patch(Wedge((0.0, 0.0), outer, 0.0, 180.0, width=outer - inner, facecolor="#F1F1EE",
-                             edgecolor="#B5B5AE", linewidth=0.6, zorder=0, label="reach of the pen"))
+        axes.add_patch(half_ring(reach_mm))
     if len(canvas):
-        axes.add_patch(Polygon(canvas[:, ::-1], closed=True, facecolor="white", edgecolor="#777777", linewidth=0.7,
-                               zorder=1, label="canvas"))
+        axes.add_patch(canvas_outline(canvas))
 
 
 def _line(axes: Axes, line: FloatArray, label: str, *, color: str, linewidth: float, zorder: float) -> None:

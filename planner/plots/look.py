@@ -11,8 +11,6 @@ from contextlib import AbstractContextManager
 import matplotlib.style
 from matplotlib.figure import Figure
 
-from planner.trajectory import Trajectory
-
 BLUE = "#0072B2"
 VERMILION = "#D55E00"
 PALE_ORANGE = "#F2C66D"  # the orange E69F00, lighter, to lie under thin lines
@@ -57,10 +55,10 @@ def planner_style() -> AbstractContextManager[None]:
     return matplotlib.style.context(_STYLE, after_reset=True)
 
 
-def set_title(figure: Figure, trajectory: Trajectory, remark: str, left_in: float) -> None:
-    """Two lines at the top left, `left_in` inches from the edge: what was drawn in bold, and a remark."""
+def set_title(figure: Figure, heading: str, remark: str, left_in: float) -> None:
+    """Two lines at the top left, `left_in` inches from the edge: what is shown in bold, and a remark."""
     width_in, height_in = (float(side) for side in figure.get_size_inches())
-    heading = _printable(trajectory.drawing) or "trajectory"
+    heading = _printable(heading)
     if len(heading) > _LONGEST_HEADING:
         heading = heading[:_LONGEST_HEADING - 1] + "…"
     # a file name may hold dollar signs, which would be taken for a formula

@@ -93,7 +93,7 @@ def plot_profiles(trajectory: Trajectory, arm: Arm) -> Figure:
         figure.align_ylabels(panels)
         remark = (f"{trajectory.duration_s:.4g} s at {trajectory.rate_hz:g} Hz on {arm.name}, "
                   f"method {trajectory.method}; derivatives are differences of the samples")
-        set_title(figure, trajectory, remark, 0.2)
+        set_title(figure, trajectory.drawing or "trajectory", remark, 0.2)
         _explain(figure, any(profile.is_over for column in columns for profile in column))
     return figure
 
