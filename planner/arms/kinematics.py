@@ -40,14 +40,14 @@ class Kinematics:
         self.nodes = casadi.horzcat(*corners).T
 
     def _pointing(self) -> list[casadi.SX]:
-        """The horizontal components of the tool axis that vary at all."""
+        """The horizontal components of the tool axis that are not zero by construction."""
         turn = self.joints[0] if self.arm.joints[0].kind is JointKind.REVOLUTE else 0
         c, s = casadi.cos(turn), casadi.sin(turn)
         components = casadi.vertcat(c * self.axis[0] + s * self.axis[1], c * self.axis[1] - s * self.axis[0])
         probe = casadi.Function("probe", [self.free], [components])
         postures = np.random.default_rng(0).uniform(-np.pi, np.pi, (self.n_free, _PROBES))
-        spread = np.ptp(np.array(probe.map(_PROBES)(postures)), axis=1)
-        return [components[row] for row in range(2) if spread[row] > 1e-9]
+        largest = np.abs(np.array(probe.map(_PROBES)(postures))).max(axis=1)
+        return [components[row] for row in range(2) if largest[row] > 1e-9]
 
     @property
     def n_free(self) -> int:

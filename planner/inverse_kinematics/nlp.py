@@ -20,6 +20,7 @@ from planner.inverse_kinematics.result import Solutions
 
 _CENTRING = 1e-3
 _TOLERANCE_MM = 1e-3
+_MOST_SETTLING = 50
 
 
 class NlpSolver:
@@ -68,7 +69,10 @@ def nlp_solver(arm: Arm) -> NlpSolver:
 
 
 def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray) -> Solutions:
-    """Targets (n, 3) one after the other from free joints (n_free,), each near the one before."""
+    """Targets (n, 3) one after the other from free joints (n_free,), each near the one before.
+
+    The first is solved until it stays where it is, so that a path does not begin with the way from the start.
+    """
     solver = nlp_solver(arm)
     n_targets = len(targets_mm)
     postures = np.empty((n_targets, len(start)))
@@ -76,6 +80,12 @@ def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray) -> Solut
     iterations = np.zeros(n_targets, dtype=np.int64)
     error_mm = np.empty(n_targets)
     before = start
+    for target in targets_mm[:1]:
+        for _ in range(_MOST_SETTLING):
+            settled, good, _, _ = solver.solve(target, before)
+            if not good or np.abs(settled - before).max() < 1e-4:
+                break
+            before = settled
     for index, target in enumerate(targets_mm):
         postures[index], converged[index], iterations[index], error_mm[index] = solver.solve(target, before)
         if converged[index]:

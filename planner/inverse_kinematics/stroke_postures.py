@@ -28,6 +28,9 @@ from planner.settings import Method
 _TARGET_SPACING_MM = 1.0
 """Distance between the targets that sequential methods solve for; splines carry their postures between."""
 _CHECKED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+_MIDDLE = np.array([0.5])
+_STRAYED_MM = 0.005
+"""A spline that strays further than this from its path between exact knots joins postures of different branches."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +79,10 @@ def joint_paths(arm: Arm, method: Method, paths: PenPaths) -> tuple[JointPaths, 
         references = postures_at(arm, method, tips)
     free, exact = project(kinematics_of(arm), np.nan_to_num(references), tips)
     splines = interpolate(paths.n_cells, arm.complete(free))
-    return splines, _obstacles(arm, splines, tips, exact, per_path)
+    middles = kinematics_of(arm).tip_mm(kinematics_of(arm).free_of(splines.positions(_MIDDLE)[:, 0]))
+    middles[:, :2] -= paths.points(_MIDDLE)[:, 0]
+    strayed = np.abs(middles).max(axis=1) > _STRAYED_MM
+    return splines, _obstacles(arm, splines, tips, exact, per_path, strayed)
 
 
 def _sequence(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
@@ -99,24 +105,30 @@ def _sequential_references(arm: Arm, method: Method, tips_mm: FloatArray) -> Flo
     return references
 
 
-def _obstacles(arm: Arm, splines: JointPaths, tips_mm: FloatArray, exact: BoolArray, per_path: IntArray
-               ) -> list[Obstacle]:
+def _obstacles(arm: Arm, splines: JointPaths, tips_mm: FloatArray, exact: BoolArray, per_path: IntArray,
+               strayed: BoolArray) -> list[Obstacle]:
     """The first place of each path where the pen is off its target or a joint beyond its limits."""
     starts = starts_of(splines.n_cells)
     joints = splines.positions(_CHECKED)
     outside = (np.maximum(arm.minimum - joints, joints - arm.maximum).max(axis=2) > 1e-9)
     obstacles = []
     missed = np.add.reduceat(~exact, per_path[:-1]) > 0
+    jumped = np.add.reduceat(strayed, starts[:-1]) > 0
     beyond = np.add.reduceat(outside.any(axis=1), starts[:-1]) > 0
-    for path in np.flatnonzero(missed | beyond).tolist():
+    for path in np.flatnonzero(missed | beyond | jumped).tolist():
+        cells = slice(int(starts[path]), int(starts[path + 1]))
         if missed[path]:
             knot = int(per_path[path] + np.argmin(exact[per_path[path]:per_path[path + 1]]))
-            cell = min(knot - path, int(starts[path + 1]) - 1)
+            cell = min(knot - path, cells.stop - 1)
             obstacles.append(_obstacle(arm, path, joints[cell, 0], tips_mm[knot], exact=False))
-        else:
-            cell = int(starts[path] + np.argmax(outside[starts[path]:starts[path + 1]].any(axis=1)))
+        elif beyond[path]:
+            cell = int(starts[path] + np.argmax(outside[cells].any(axis=1)))
             at = int(np.argmax(outside[cell]))
             obstacles.append(_obstacle(arm, path, joints[cell, at], tips_mm[cell + path], exact=True))
+        else:
+            tip = tips_mm[int(starts[path] + np.argmax(strayed[cells])) + path]
+            obstacles.append(Obstacle(path, (float(tip[0]), float(tip[1])),
+                                      "the method changes to another branch of postures there", None, None))
     return obstacles
 
 
