@@ -41,7 +41,7 @@ class Branches:
     @property
     def exist(self) -> BoolArray:
         """(n, n_branches) which branches exist."""
-        found: BoolArray = ~np.isnan(self.postures).any(axis=-1)
+        found: BoolArray = np.logical_not(np.isnan(self.postures).any(axis=-1))
         return found
 
     def only(self, chosen: BoolArray) -> Branches:
@@ -75,7 +75,7 @@ def solve_in_blocks(arm: Arm, n_targets: int, n_branches: int, solve: Solve) -> 
 def within_limits(arm: Arm, branches: Branches) -> BoolArray:
     """(n, n_branches) whether a branch exists with all joints, driven ones too, within their position limits."""
     joints = arm.complete(branches.postures)
-    inside: BoolArray = ((joints >= arm.minimum - TOLERANCE) & (joints <= arm.maximum + TOLERANCE)).all(axis=-1)
+    inside: BoolArray = np.all((joints >= arm.minimum - TOLERANCE) & (joints <= arm.maximum + TOLERANCE), axis=-1)
     return inside
 
 

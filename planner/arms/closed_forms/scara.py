@@ -37,7 +37,7 @@ def at_pose(arm: Arm, pose: FloatArray) -> Branches:
 
 def _solve(arm: Arm, tip_mm: FloatArray, heading_rad: FloatArray, *, from_azimuth: bool) -> Branches:
     require_rows(arm, "scara", _ROWS)
-    shoulder, elbow_joint, _, tool = arm.joints
+    shoulder, elbow_joint, *_ = arm.joints
     height = sum(joint.d_mm for joint in arm.joints)
     offset = sum(joint.theta_rad for joint in arm.joints)
 

@@ -110,7 +110,7 @@ def _widest_branch(survey: _Survey) -> int:
     """The branch that gets to most of the paper and, where several do, the one with most room to the limits."""
     usable = survey.room > -np.inf
     covered = np.where(usable, survey.share, 0.0).max(axis=1).sum(axis=0)
-    room = np.where(usable, survey.room * survey.share, 0.0).sum(axis=(0, 1))
+    room = (np.where(usable, survey.room, 0.0) * survey.share).sum(axis=(0, 1))
     return max(range(len(covered)), key=lambda branch: (round(float(covered[branch]), 6), float(room[branch])))
 
 

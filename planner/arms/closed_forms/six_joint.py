@@ -33,8 +33,9 @@ def at_tip(arm: Arm, tip_mm: FloatArray, spin_rad: FloatArray) -> Branches:
 def at_pose(arm: Arm, pose: FloatArray) -> Branches:
     """All postures of each pose (n, 4, 4), in mm. Errors: ArmFileError where the rows are of another form."""
     require_rows(arm, "six_joint", (*_ROWS, *wrist_rows(arm)))
-    base, upper, elbow_joint, forearm, _, tool = arm.joints
+    base, upper, elbow_joint, forearm, wrist_joint, tool = arm.joints
     twist, forearm_twist = sign_of_twist(base), sign_of_twist(elbow_joint)
+    wrist_twist = sign_of_twist(wrist_joint)
     left = -twist * (upper.d_mm + elbow_joint.d_mm)
     across = -forearm_twist * forearm.d_mm
     fore_mm, fore_angle = float(np.hypot(elbow_joint.a_mm, across)), float(np.arctan2(across, elbow_joint.a_mm))
@@ -53,7 +54,7 @@ def at_pose(arm: Arm, pose: FloatArray) -> Branches:
             for k, elbow in enumerate(ELBOWS):
                 shoulder = triangle.direction_rad - elbow * triangle.lead_rad
                 bend = elbow * triangle.bend_rad - fore_angle
-                wrist = wrist_angles(rotation, waist, twist, shoulder + bend, forearm_twist, sign_of_twist(arm.joints[4]))
+                wrist = wrist_angles(rotation, waist, twist, shoulder + bend, forearm_twist, wrist_twist)
                 singular = singular | (wrist.aligned & (gap == 0.0))
                 rows = out[4 * side + 2 * k:4 * side + 2 * k + 2]
                 rows[:, 0] = waist - base.theta_rad

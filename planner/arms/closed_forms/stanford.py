@@ -32,8 +32,10 @@ def at_tip(arm: Arm, tip_mm: FloatArray, spin_rad: FloatArray) -> Branches:
 def at_pose(arm: Arm, pose: FloatArray) -> Branches:
     """All postures of each pose (n, 4, 4), in mm. Errors: ArmFileError where the rows are of another form."""
     require_rows(arm, "stanford", (*_ROWS, *wrist_rows(arm)))
-    base, shoulder_joint, slide, forearm, _, tool = arm.joints
+    base, shoulder_joint, slide, forearm, wrist_joint, tool = arm.joints
     twist, slide_twist = sign_of_twist(base), sign_of_twist(shoulder_joint)
+    wrist_twist = sign_of_twist(wrist_joint)
+    offsets = [slide.theta_rad + forearm.theta_rad, wrist_joint.theta_rad, tool.theta_rad]
     left = -twist * shoulder_joint.d_mm
     fixed_mm = slide.d_mm + forearm.d_mm
     signs = extension_signs(arm)
@@ -53,13 +55,13 @@ def at_pose(arm: Arm, pose: FloatArray) -> Branches:
                 # The slide points along -s2 (-sin, cos) of the shoulder's angle, s2 the sign of its twist.
                 outward = -slide_twist * sign
                 shoulder = np.where(at_shoulder, 0.0, np.arctan2(-outward * along, outward * up))
-                wrist = wrist_angles(rotation, waist, twist, shoulder, slide_twist, sign_of_twist(arm.joints[4]))
+                wrist = wrist_angles(rotation, waist, twist, shoulder, slide_twist, wrist_twist)
                 singular = singular | (wrist.aligned & ~unreachable)
                 rows = out[4 * k + 2 * side:4 * k + 2 * side + 2]
                 rows[:, 0] = waist - base.theta_rad
                 rows[:, 1] = shoulder - shoulder_joint.theta_rad
                 rows[:, 2] = sign * extension - fixed_mm
-                fill_wrist(rows, wrist, [slide.theta_rad + forearm.theta_rad, arm.joints[4].theta_rad, tool.theta_rad])
+                fill_wrist(rows, wrist, offsets)
                 rows[:, :, unreachable] = np.nan
         return sides.gap_mm, singular
 

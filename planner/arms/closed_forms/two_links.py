@@ -11,6 +11,8 @@ from planner.arrays import BoolArray, FloatArray
 GAP_MM = 1e-9
 """A point so little beyond reach counts as reached by the stretched (or folded) links."""
 _ROUNDING = 1e-14
+_SINGULAR = 1e-11
+"""Shares of the squared reach: what rounding leaves of straight links, and up to where they count as singular."""
 _AT_SHOULDER_MM = 1e-10
 
 
@@ -39,18 +41,19 @@ def two_links(along_mm: FloatArray, up_mm: FloatArray, upper_mm: float, fore_mm:
     far, near = upper_mm + fore_mm, abs(upper_mm - fore_mm)
     to_stretched = far * far - squared
     to_folded = squared - near * near
-    stretched = to_stretched <= _ROUNDING * far * far
-    folded = to_folded <= max(_ROUNDING * far * near, _AT_SHOULDER_MM ** 2)
-    singular = stretched | folded
-    root = to_stretched
-    root *= to_folded
+    at_shoulder = _AT_SHOULDER_MM ** 2
+    singular = to_stretched <= _SINGULAR * far * far
+    singular |= to_folded <= max(_SINGULAR * far * near, at_shoulder)
+    root = to_stretched * to_folded
     gap = np.zeros(len(squared))
     if singular.any():
         distance = np.sqrt(squared[singular])
         missing = np.maximum(distance - far, near - distance)
         gap[singular] = np.where(missing > GAP_MM, missing, 0.0)
-        root[singular] = 0.0
-        direction[squared < _AT_SHOULDER_MM ** 2] = 0.0
+        straight = to_folded <= max(_ROUNDING * far * near, at_shoulder)
+        straight |= to_stretched <= _ROUNDING * far * far
+        root[straight] = 0.0
+        direction[squared < at_shoulder] = 0.0
     np.sqrt(root, out=root)
     bend = np.arctan2(root, squared - (upper_mm * upper_mm + fore_mm * fore_mm))
     squared += upper_mm * upper_mm - fore_mm * fore_mm

@@ -12,13 +12,15 @@ from planner.arms.closed_forms.dh_rows import Row
 from planner.arrays import BoolArray, FloatArray
 
 _ALIGNED = 1e-12
-"""Sine of the middle joint's angle below which the outer two axes count as one."""
+_SINGULAR = 1e-9
+"""Sine of the middle joint's angle below which the outer two axes are one, and below which they count as
+singular: rounding of the joints before the wrist lies between."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class WristAngles:
     """Theta of the three wrist rows, (n,): this solution, and its twin `(t4 + pi, -t5, t6 + pi)`. Where the axes
-    are aligned only t4 + t6 (or their difference) is determined: t4 is 0 there."""
+    are aligned (flagged within rounding) only t4 + t6 (or their difference) is determined: t4 is 0 there."""
 
     theta_rad: tuple[FloatArray, FloatArray, FloatArray]
     aligned: BoolArray
@@ -55,7 +57,7 @@ def wrist_angles(rotation: FloatArray, waist_rad: FloatArray, waist_twist: float
     normal, sliding = in_forearm(0), in_forearm(1)
     theta = (np.arctan2(s4, c4), wrist_twist * np.arctan2(sine, approach[2]),
              np.arctan2(c4 * normal[1] - s4 * normal[0], c4 * sliding[1] - s4 * sliding[0]))
-    return WristAngles(theta, aligned)
+    return WristAngles(theta, sine < _SINGULAR)
 
 
 def fill_wrist(rows: FloatArray, wrist: WristAngles, offsets_rad: Sequence[float]) -> None:
