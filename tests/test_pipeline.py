@@ -116,12 +116,8 @@ def test_any_drawing_is_drawn_as_promised(tmp_path: Path, shapes: list[Shape]) -
     assert_keeps_its_promises(planned(tmp_path, shapes, PlanSettings(rate_hz=1000.0)).trajectory, shapes)
 
 
-OVERSHOOT = pytest.mark.xfail(strict=True, reason="postures on a joint limit; the spline between them goes beyond")
-
-
-@pytest.mark.parametrize(("arm_name", "method"), [
-    pytest.param(arm_name, method, marks=[OVERSHOOT] if (arm_name, method) == ("drawing_arm_2022", Method.NLP) else [])
-    for arm_name in DRAWING_ARMS for method in Method])
+@pytest.mark.parametrize("arm_name", DRAWING_ARMS)
+@pytest.mark.parametrize("method", list(Method))
 def test_every_method_draws_with_both_arms(tmp_path: Path, method: Method, arm_name: str) -> None:
     wanted = PlanSettings(arm=arm_name, method=method, rate_hz=500.0)
     trajectory = planned(tmp_path, FACE, wanted).trajectory

@@ -10,6 +10,10 @@ from planner.arrays import BoolArray, FloatArray
 RESIDUAL_MM = 1e-9
 """A posture is exact where its task misses by less than this (mm, or 1e-9 rad of pointing)."""
 
+_STILL_RAD = 1e-11
+"""Iteration goes on while a posture still moves by more than this, in rad or mm: a target is met long before the
+posture nearest to its reference is found."""
+
 
 def joint_scale(kinematics: Kinematics) -> FloatArray:
     """(n_free,) speeds of the free joints: dividing by them measures postures in seconds of joint motion."""
@@ -29,12 +33,13 @@ def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *
     squared_scale = joint_scale(kinematics) ** 2
     solution = reference.copy()
     best = np.full(len(reference), np.inf)
+    moved = np.full(len(reference), np.inf)
     active = np.arange(len(reference))
     for _ in range(iterations):
         task, jacobian = kinematics.task_and_jacobian(solution[active])
         miss = target[active] - task
         best[active] = np.abs(miss).max(axis=1, initial=0.0)
-        going = best[active] > RESIDUAL_MM
+        going = (best[active] > RESIDUAL_MM) | (moved[active] > _STILL_RAD)
         if not going.any():
             break
         active, miss, jacobian = active[going], miss[going], jacobian[going]
@@ -49,6 +54,7 @@ def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *
         longest = np.abs(change / joint_scale(kinematics)).max(axis=1)
         allowed = 0.5 * np.pi / joint_scale(kinematics).max()
         change *= np.minimum(1.0, allowed / np.maximum(longest, 1e-300))[:, None]
+        moved[active] = np.abs(change).max(axis=1)
         solution[active] += change
     else:
         task, _ = kinematics.task_and_jacobian(solution[active])

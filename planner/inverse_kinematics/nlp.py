@@ -21,6 +21,8 @@ from planner.inverse_kinematics.result import Solutions
 _CENTRING = 1e-3
 _TOLERANCE_MM = 1e-3
 _MOST_SETTLING = 50
+_ROOM = 2e-3
+"""Share of each joint's range kept from its limits, for the splines that join the postures of sparse targets."""
 
 
 class NlpSolver:
@@ -46,7 +48,9 @@ class NlpSolver:
     def solve(self, target_mm: FloatArray, before: FloatArray) -> tuple[FloatArray, bool, int, float]:
         """Posture (n_free,) for a tip (3,) near the posture before, whether it converged, iterations, error in mm."""
         target = self.kinematics.task_target(target_mm[None])[0]
-        bounds = {"lbg": np.concatenate((target, self.arm.minimum)), "ubg": np.concatenate((target, self.arm.maximum))}
+        room = _ROOM * (self.arm.maximum - self.arm.minimum)
+        bounds = {"lbg": np.concatenate((target, self.arm.minimum + room)),
+                  "ubg": np.concatenate((target, self.arm.maximum - room))}
         solution, iterations = before, 0
         for solver in (self._fast, self._sure):
             found: dict[str, Any] = solver(x0=before, p=before, **bounds)

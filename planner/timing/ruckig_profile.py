@@ -31,9 +31,18 @@ class RestToRest:
         return np.array([self._trajectory.at_time(time)[0][0] for time in clipped.tolist()])
 
     def time_at(self, position: float) -> float:
-        """When the position is passed, for positions between 0 and `distance`."""
-        time = self._trajectory.get_first_time_at_position(0, position)
-        return self.duration_s if time is None else float(time)
+        """When the position is passed, for positions between 0 and `distance`.
+
+        By bisection: Ruckig's own get_first_time_at_position finds nothing for some of them.
+        """
+        before, after = 0.0, self.duration_s
+        for _ in range(60):
+            middle = 0.5 * (before + after)
+            if self._trajectory.at_time(middle)[0][0] < position:
+                before = middle
+            else:
+                after = middle
+        return after
 
 
 def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: float) -> RestToRest:

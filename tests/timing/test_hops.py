@@ -97,7 +97,6 @@ def test_limits_hold_at_ten_times_the_samples() -> None:
         assert (share_of_limits(samples, 0.001, Limits.of(arm)) <= 1.002).all()
 
 
-@pytest.mark.xfail(strict=True, reason="projection stops once the tip is on target, short of the nearest posture")
 def test_a_hop_takes_the_same_time_whatever_the_rate_of_samples() -> None:
     arm = load_once("drawing_arm")
     first, second = touches(arm, PLACES["drawing_arm"][:2])
