@@ -20,12 +20,13 @@ from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.kinematics import Kinematics, kinematics_of
 from planner.arms.projection import joint_scale, project
 from planner.arrays import BoolArray, FloatArray, IntArray
-from planner.errors import PlanError
+from planner.errors import ArmFileError, PlanError
 
 _COARSE_STEP_MM = 6.0
 _DRAWN = 20_000
 _SAMPLES = 120
 _FEW = 25
+_UPRIGHT_PROBES = 16
 _NODES = 49
 _EDGE_MM = 1.0
 """The field is laid out over sqrt(outer + this - rho): near the stretched arm postures go with that root."""
@@ -99,7 +100,8 @@ def slowest_direction_mm_s(kinematics: Kinematics, free: FloatArray) -> FloatArr
 
 @lru_cache(maxsize=16)
 def posture_field(arm: Arm) -> PostureField:
-    """The field of an arm. Errors: PlanError where the arm cannot have one."""
+    """The field of an arm. Errors: PlanError where the arm cannot have one, ArmFileError where its file contradicts
+    itself."""
     first = arm.joints[0]
     if first.kind is not JointKind.REVOLUTE or 0 not in arm.free_joints:
         raise PlanError(f"arm {arm.name}: method 'path' needs a first joint that turns about the vertical axis")
@@ -107,12 +109,27 @@ def posture_field(arm: Arm) -> PostureField:
         raise PlanError(f"arm {arm.name}: joint {first.name} turns the arm about the vertical axis;"
                         " no coupling may depend on it")
     kinematics = kinematics_of(arm)
+    _require_upright(kinematics)
     radii, samples = _sampled_rays(kinematics)
     course = _coarse_course(kinematics, radii, samples)
     if course is None:
         raise PlanError(f"arm {arm.name}: no posture within the joint limits puts the pen on the paper"
                         f" at {arm.workspace.inner_radius_mm:g} mm or more from the base axis")
     return _polished(kinematics, *_stretched_to_edges(kinematics, *course))
+
+
+def _require_upright(kinematics: Kinematics) -> None:
+    """Refuse an arm that says its couplings or its chain keep the pen upright when they do not."""
+    arm = kinematics.arm
+    if arm.pen.hold not in (PenHold.COUPLING, PenHold.CONSTRUCTION):
+        return
+    postures = np.random.default_rng(0).uniform(kinematics.free_of(arm.minimum), kinematics.free_of(arm.maximum),
+                                                (_UPRIGHT_PROBES, kinematics.n_free))
+    tilt = float(np.degrees(np.arccos(np.clip(-kinematics.tool_axis(postures)[:, 2], -1.0, 1.0))).max())
+    if tilt > 0.01:
+        raise ArmFileError(arm.name, [f"pen.hold is '{arm.pen.hold}', but the joints leave pen.tool_axis up to"
+                                      f" {tilt:.1f} degrees from straight down: correct the coupling, the DH rows or"
+                                      " pen.tool_axis, or let the planner hold the pen with 'tool_axis' or 'free'"])
 
 
 def _usable(kinematics: Kinematics, free: FloatArray) -> BoolArray:

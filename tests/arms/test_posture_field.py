@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planner.arms.arm import Arm, Coupling, JointKind
-from planner.arms.arm_file import load_arm
+from planner.arms.arm_file import arms_folder, load_arm
 from planner.arms.kinematics import kinematics_of
 from planner.arms.posture_field import posture_field, slowest_direction_mm_s, within_limits
 from planner.arms.projection import project
 from planner.arrays import FloatArray
-from planner.errors import PlanError
+from planner.errors import ArmFileError, PlanError
 from tests.arms.chains import DRAWING_ARMS, load_once, tips_by_product
 
 ARMS = st.sampled_from(DRAWING_ARMS).map(load_once)
@@ -120,3 +121,14 @@ def test_an_arm_that_cannot_have_a_field_is_told_why() -> None:
     raised = replace(arm, joints=(replace(arm.joints[0], d_mm=300.0), *arm.joints[1:]))
     with pytest.raises(PlanError, match="no posture within the joint limits"):
         posture_field(raised)
+
+
+@pytest.mark.parametrize("edit", [("constant_deg = -90.0", "constant_deg = -60.0"),
+                                  ("tool_axis = [1.0, 0.0, 0.0]", "tool_axis = [0.0, 0.0, 1.0]")])
+def test_a_coupling_that_leaves_the_pen_tilted_is_refused(tmp_path: Path, edit: tuple[str, str]) -> None:
+    text = (arms_folder() / "drawing_arm.toml").read_text(encoding="utf-8")
+    assert edit[0] in text
+    file = tmp_path / "tilted.toml"
+    file.write_text(text.replace(*edit), encoding="utf-8")
+    with pytest.raises(ArmFileError, match="degrees from straight down"):
+        posture_field(load_arm(str(file)))
