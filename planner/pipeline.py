@@ -25,23 +25,27 @@ from planner.errors import PlanError, TargetOutOfReach, UsageError
 from planner.inverse_kinematics.stroke_postures import Obstacle, exact_postures, joint_paths, postures_at
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
-from planner.placement.pen_path import PenPaths, smooth_paths
+from planner.placement.pen_path import smooth_paths
 from planner.settings import PlanSettings
 from planner.summary import PhaseTimes, PlanSummary
 from planner.timing.hops import Hop, HopRules, Touch, plan_hops
 from planner.timing.limits import Limits
 from planner.timing.path_timing import FRACTIONS, TimingProblem, minimum_time
+from planner.timing.speed_cap import rate_cap
 from planner.timing.stroke_motion import motions
 from planner.trajectory import TRAVELLING, Trajectory
 
 Report = Callable[[str, int, int], None]
 """Told the stage, how much of it is done, and how much there is."""
 
-_FLATTEN_SHARE, _JOIN_SHARE, _SMOOTH_SHARE, _SAMPLE_SHARE = 0.1, 0.2, 0.45, 0.2
+_FLATTEN_SHARE, _JOIN_SHARE, _SMOOTH_SHARE, _SAMPLE_SHARE = 0.1, 0.1, 0.5, 0.4
 """Shares of the tolerance: chords for curves, gaps that are closed, rounded corners, and the straight
-lines between samples. They never fall due all at one place in the same direction, and add up to less than one."""
+lines between samples."""
 
 _CHUNK_POINTS = 6000
+_TIMING_HALVINGS = 2
+"""How often the cells of a path are cut in two before it is timed: jerk switches at cell ends only, and cells as
+long as the corners that they go round are too coarse for that."""
 _TAP_S = 0.05
 """How long a tap rests on the paper at least: a pen needs a moment to leave a dot."""
 
@@ -184,9 +188,12 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
         rest = iter(_timed_lines(arm, [strokes[index] for index in open_ways], settings) if open_ways else ())
         return [blocked[index] if index in blocked else next(rest) for index in range(len(strokes))]
     limits = Limits.of(arm)
+    for _ in range(_TIMING_HALVINGS):
+        paths, splines = paths.halved(), splines.halved()
     derivatives = (splines.positions(FRACTIONS, 1), splines.positions(FRACTIONS, 2), splines.positions(FRACTIONS, 3))
     problem = TimingProblem.of(paths.n_cells, derivatives, (limits.velocity, limits.acceleration, limits.jerk),
-                               _rate_cap(paths, settings))
+                               rate_cap(paths, settings.speed_mm_s, _SAMPLE_SHARE * settings.tolerance_mm,
+                                        settings.rate_hz))
     motion = motions(splines, minimum_time(problem), limits, settings.rate_hz)
     kinematics = kinematics_of(arm)
     dwell = round(settings.dwell_s * settings.rate_hz)
@@ -207,24 +214,6 @@ def _timed_taps(arm: Arm, tips_mm: FloatArray, settings: PlanSettings) -> list[_
     touches = [Touch(tip, posture) for tip, posture in zip(tips_mm, free, strict=True)]
     return [blocked.get(index) or _TimedStroke(joints[index:index + 1], touch, touch, rest)
             for index, touch in enumerate(touches)]
-
-
-def _rate_cap(paths: PenPaths, settings: PlanSettings) -> FloatArray:
-    """(total cells,) cap on dsigma/dt: the pen's speed, and the bend that straight lines between samples may cut.
-
-    A chord over one period at speed v cuts v^2 kappa / (8 rate^2) off a bend of curvature kappa.
-    """
-    fractions = np.array([0.0, 0.5])
-    slope, bend = paths.points(fractions, 1), paths.points(fractions, 2)
-    length = np.hypot(slope[..., 0], slope[..., 1])
-    cross = np.abs(slope[..., 0] * bend[..., 1] - slope[..., 1] * bend[..., 0])
-    allowed = 8 * _SAMPLE_SHARE * settings.tolerance_mm * settings.rate_hz ** 2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        cap = np.fmin(settings.speed_mm_s / length, np.sqrt(allowed * length / cross))
-    cap[np.isnan(cap)] = np.inf
-    knot, middle = cap.T
-    capped: FloatArray = np.minimum(knot, np.minimum(middle, np.concatenate(([np.inf], middle[:-1]))))
-    return capped
 
 
 def _hops(arm: Arm, timed: Sequence[_TimedStroke], settings: PlanSettings, lift_mm: float) -> list[Hop]:

@@ -68,3 +68,24 @@ def evaluate_at(controls: FloatArray, cell_controls: IntArray, fractions: FloatA
     for i in range(degree + 1):
         values += controls[cell_controls + i] * table[:, i, None]
     return values
+
+
+def halved(controls: FloatArray, n_cells: IntArray, degree: int) -> FloatArray:
+    """Control points (2 total cells + degree n_curves, d) of the same curves with every cell cut in two.
+
+    controls: (total cells + degree n_curves, d) of curves laid end to end (Lane and Riesenfeld 1980: each new
+    control point is a mean of old ones with binomial weights).
+    """
+    mask = [comb(degree + 1, k) / 2 ** degree for k in range(degree + 2)]
+    new_count = 2 * n_cells + degree
+    index = within(new_count)
+    first = np.repeat(starts_of(n_cells + degree)[:-1], new_count)
+    last = np.repeat(n_cells + degree - 1, new_count)
+    cut = np.zeros((len(index), controls.shape[1]))
+    for step in range(degree // 2 + 2):
+        old = (index - 1) // 2 + step  # the first old control point that reaches new point j is (j - 1) / 2
+        weight_index = index - 2 * old + degree
+        used = (weight_index >= 0) & (weight_index <= degree + 1) & (old >= 0) & (old <= last)
+        weight = np.where(used, np.take(mask, np.clip(weight_index, 0, degree + 1)), 0.0)
+        cut += weight[:, None] * controls[first + np.clip(old, 0, last)]
+    return cut

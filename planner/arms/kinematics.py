@@ -15,7 +15,6 @@ from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.compiled import CompiledFunction
 from planner.arrays import FloatArray
 
-
 _PROBES = 32
 
 

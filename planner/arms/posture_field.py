@@ -167,7 +167,8 @@ def _sampled_rays(kinematics: Kinematics) -> tuple[FloatArray, list[FloatArray]]
     longest = float(reach.max(initial=0.0)) + _COARSE_STEP_MM
     radii = np.arange(arm.workspace.inner_radius_mm, max(longest, arm.workspace.inner_radius_mm + 1), _COARSE_STEP_MM)
     count = min(_SAMPLES, len(drawn))
-    closest = [np.argpartition(np.hypot(reach - radius, height) / longest + tilt, count - 1)[:count] for radius in radii]
+    closest = [np.argpartition(np.hypot(reach - radius, height) / longest + tilt, count - 1)[:count]
+               for radius in radii]
     pools: list[FloatArray] = [np.empty((0, kinematics.n_free)) for _ in radii]
     _add_usable(kinematics, pools, np.repeat(np.arange(len(radii)), count), drawn[np.concatenate(closest)], radii, 20)
     for order in (range(1, len(radii)), range(len(radii) - 2, -1, -1)):
@@ -183,7 +184,8 @@ def _add_usable(kinematics: Kinematics, pools: list[FloatArray], rays: IntArray,
     """Project postures onto the rays they are meant for, and add what is usable to the rays' pools."""
     found, exact = project(kinematics, start, _on_ray(radii[rays]), iterations=iterations)
     found, rays = found[exact], rays[exact]
-    turning = np.array([kinematics.arm.joints[joint].kind is JointKind.REVOLUTE for joint in kinematics.arm.free_joints])
+    joints = [kinematics.arm.joints[index] for index in kinematics.arm.free_joints]
+    turning = np.array([joint.kind is JointKind.REVOLUTE for joint in joints])
     if not kinematics.arm.couplings:  # whole turns mean nothing where no other joint counts them
         middle = kinematics.free_of((kinematics.arm.minimum + kinematics.arm.maximum) / 2)
         turns = np.round((found - middle) / (2 * np.pi)) * turning

@@ -9,7 +9,7 @@ from scipy.linalg import solve_banded
 
 from planner.arrays import FloatArray, IntArray
 from planner.ragged import starts_of, within
-from planner.spline import evaluate, evaluate_at, first_controls, weights
+from planner.spline import evaluate, evaluate_at, first_controls, halved, weights
 
 DEGREE = 5
 
@@ -28,6 +28,10 @@ class JointPaths:
     def positions(self, fractions: FloatArray, derivative: int = 0) -> FloatArray:
         """(total cells, n_fractions, n_joints) positions or derivatives by sigma at fractions of every cell."""
         return evaluate(self.controls, first_controls(self.n_cells, DEGREE), fractions, DEGREE, derivative)
+
+    def halved(self) -> JointPaths:
+        """The same paths with every cell cut in two, sigma counting the new cells."""
+        return JointPaths(2 * self.n_cells, halved(self.controls, self.n_cells, DEGREE))
 
     def at(self, cells: IntArray, fractions: FloatArray, derivative: int = 0) -> FloatArray:
         """(n, n_joints) at one fraction in each of the named cells (counted over all paths)."""

@@ -17,7 +17,7 @@ import numpy as np
 
 from planner.arrays import FloatArray, IntArray
 from planner.ragged import starts_of, within
-from planner.spline import evaluate, evaluate_at, first_controls
+from planner.spline import evaluate, evaluate_at, first_controls, halved
 
 DEGREE = 5
 _LONGEST_CELL_MM = 0.8
@@ -51,6 +51,10 @@ class PenPaths:
     def points(self, fractions: FloatArray, derivative: int = 0) -> FloatArray:
         """(total cells, n_fractions, 2) points, or derivatives by sigma, at fractions of every cell."""
         return evaluate(self.controls_mm, first_controls(self.n_cells, DEGREE), fractions, DEGREE, derivative)
+
+    def halved(self) -> PenPaths:
+        """The same paths with every cell cut in two, sigma counting the new cells."""
+        return PenPaths(2 * self.n_cells, halved(self.controls_mm, self.n_cells, DEGREE))
 
 
 def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPaths:

@@ -1,0 +1,84 @@
+"""How fast the pen may go along its paths: its own speed, and what straight lines between samples may cut off."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from planner.arrays import FloatArray
+from planner.placement.pen_path import PenPaths
+from planner.ragged import starts_of
+
+_STEP = 0.85
+"""Ratio of the speeds that are tried, one after the other."""
+_SLOWEST = 0.01
+_GAP_MM = 1e4
+_ENDS = np.array([0.0, 1.0])
+
+
+def rate_cap(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz: float) -> FloatArray:
+    """(total cells,) cap on dsigma/dt at the left end of every cell.
+
+    Controllers join samples by straight lines. A line that spans a length l of path cuts a corner in its middle by the
+    sagitta of the chord from l/2 before to l/2 behind; so within l/2 of a point where that chord would cut too much the
+    pen may not go faster than l per sample period.
+    """
+    speed = np.minimum(speed_mm_s, _chord_speed(paths, speed_mm_s, sagitta_mm, rate_hz))
+    slope = paths.points(_ENDS[:1], 1)[:, 0]
+    with np.errstate(divide="ignore"):
+        cap: FloatArray = speed / np.hypot(slope[:, 0], slope[:, 1])
+    return cap
+
+
+def _chord_speed(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz: float) -> FloatArray:
+    """(total cells,) the speed that chords allow at the left end of every cell."""
+    ends = paths.points(_ENDS)
+    steps = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    first = starts_of(paths.n_cells)[:-1]
+    # One axis of arc length for all paths, with the end of each path as a point of its own and a gap behind it.
+    last = first + paths.n_cells - 1
+    points = np.insert(ends[:, 0], last + 1, ends[last, 1], axis=0)
+    steps = np.insert(steps, last + 1, _GAP_MM)
+    along = np.concatenate(([0.0], np.cumsum(steps)[:-1]))
+    is_knot = np.ones(len(points), dtype=bool)
+    is_knot[last + 1 + np.arange(len(last))] = False
+    begin = np.repeat(along[first + np.arange(len(first))], paths.n_cells + 1)
+    end = np.repeat(along[last + 1 + np.arange(len(last))], paths.n_cells + 1)
+    allowed = np.full(len(points), speed_mm_s)
+    open_points = np.arange(len(points))  # where the chord of the speed at hand still cuts too much
+    speed = speed_mm_s
+    while len(open_points) and speed > _SLOWEST * speed_mm_s:
+        half = 0.5 * speed / rate_hz
+        at = along[open_points]
+        before = _at(np.maximum(at - half, begin[open_points]), along, points)
+        behind = _at(np.minimum(at + half, end[open_points]), along, points)
+        cut = _distance_to_line(points[open_points], before, behind) > sagitta_mm
+        if speed < speed_mm_s:
+            _restrict(allowed, speed, along, at[~cut], half)
+        open_points = open_points[cut]
+        speed *= _STEP
+    _restrict(allowed, speed, along, along[open_points], 0.5 * speed / rate_hz)
+    return allowed[is_knot]
+
+
+def _at(along_mm: FloatArray, axis_mm: FloatArray, points: FloatArray) -> FloatArray:
+    return np.column_stack([np.interp(along_mm, axis_mm, column) for column in points.T])
+
+
+def _distance_to_line(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    chord, offset = end - start, points - start
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    across = np.abs(chord[:, 0] * offset[:, 1] - chord[:, 1] * offset[:, 0])
+    to_start = np.hypot(offset[:, 0], offset[:, 1])
+    distance: FloatArray = np.where(length > 1e-9, across / np.maximum(length, 1e-9), to_start)
+    return distance
+
+
+def _restrict(allowed: FloatArray, speed: float, along: FloatArray, centres_mm: FloatArray, half_mm: float) -> None:
+    """Cap the speed within half_mm of the centres."""
+    if not len(centres_mm):
+        return
+    depth = np.zeros(len(along) + 1)
+    np.add.at(depth, np.searchsorted(along, centres_mm - half_mm), 1)
+    np.add.at(depth, np.searchsorted(along, centres_mm + half_mm, side="right"), -1)
+    covered = np.cumsum(depth[:-1]) > 0
+    allowed[covered] = np.minimum(allowed[covered], speed)
