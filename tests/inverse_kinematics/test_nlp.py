@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from planner.arms.arm import Arm
 from planner.arms.canvas import usable_canvas
