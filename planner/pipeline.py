@@ -198,8 +198,7 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
     kinematics = kinematics_of(arm)
     dwell = round(settings.dwell_s * settings.rate_hz)
     timed: list[_TimedStroke | Obstacle] = []
-    for index, stroke in enumerate(strokes):
-        joints = motion.sample(index)
+    for stroke, joints in zip(strokes, motion.samples(), strict=True):
         free = kinematics.free_of(joints)
         timed.append(_TimedStroke(joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell))
     return timed

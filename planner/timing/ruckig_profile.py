@@ -6,7 +6,9 @@ path, and waypoints would make it call a cloud service.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 import ruckig
@@ -14,35 +16,45 @@ import ruckig
 from planner.arrays import FloatArray
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, slots=True)
 class RestToRest:
-    """A time-optimal move from 0 to `distance`, at rest at both ends."""
+    """A time-optimal move from 0 to `distance`, at rest at both ends.
+
+    begins_s: (8,) when each of its seven pieces of constant jerk begins, and when the last one ends; states: (8,)
+    position, velocity, acceleration and jerk at these times.
+    """
 
     distance: float
-    _trajectory: ruckig.Trajectory
+    begins_s: tuple[float, ...]
+    states: tuple[tuple[float, float, float, float], ...]
 
     @property
     def duration_s(self) -> float:
-        return float(self._trajectory.duration)
+        return self.begins_s[-1]
 
     def at(self, times_s: FloatArray) -> FloatArray:
         """(n,) positions at times (n,); before the start 0, after the end `distance`."""
-        clipped = np.clip(times_s, 0.0, self.duration_s)
-        return np.array([self._trajectory.at_time(time)[0][0] for time in clipped.tolist()])
+        begins = np.array(self.begins_s)
+        times = np.clip(times_s, 0.0, begins[-1])
+        piece = np.searchsorted(begins[1:-1], times, side="right")
+        position, velocity, acceleration, jerk = np.array(self.states)[piece].T
+        into = times - begins[piece]
+        reached: FloatArray = position + into * (velocity + into * (acceleration / 2 + into * jerk / 6))
+        reached[times_s >= begins[-1]] = self.distance
+        return reached
 
     def time_at(self, position: float) -> float:
-        """When the position is passed, for positions between 0 and `distance`.
-
-        By bisection: Ruckig's own get_first_time_at_position finds nothing for some of them.
-        """
-        before, after = 0.0, self.duration_s
+        """When the position is passed, for positions between 0 and `distance`, by bisection within its piece."""
+        piece = min(max(bisect_right([state[0] for state in self.states], position) - 1, 0), len(self.states) - 2)
+        start, velocity, acceleration, jerk = self.states[piece]
+        before, after = 0.0, self.begins_s[piece + 1] - self.begins_s[piece]
         for _ in range(60):
             middle = 0.5 * (before + after)
-            if self._trajectory.at_time(middle)[0][0] < position:
+            if start + middle * (velocity + middle * (acceleration / 2 + middle * jerk / 6)) < position:
                 before = middle
             else:
                 after = middle
-        return after
+        return self.begins_s[piece] + after
 
 
 def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: float) -> RestToRest:
@@ -54,4 +66,7 @@ def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: fl
     result = ruckig.Ruckig(1).calculate(request, trajectory)
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
         raise ArithmeticError(f"Ruckig: {result} over {distance:g} within {velocity:g}, {acceleration:g}, {jerk:g}")
-    return RestToRest(distance, trajectory)
+    profile = trajectory.profiles[0][0]
+    begins_s = (0.0, *accumulate(profile.t))
+    return RestToRest(distance, begins_s,
+                      tuple(zip(profile.p, profile.v, profile.a, (*profile.j, 0.0), strict=True)))

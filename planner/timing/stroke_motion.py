@@ -7,12 +7,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import FloatArray, IntArray
-from planner.inverse_kinematics.joint_path import JointPaths
-from planner.ragged import starts_of
+from planner.inverse_kinematics.joint_path import DEGREE, JointPaths
+from planner.ragged import starts_of, within
+from planner.spline import evaluate, first_controls
 from planner.timing.limits import Limits
 
 _CHECKS_PER_CELL = 20
-_CELLS_AT_ONCE = 8192
+_CELLS_AT_ONCE = 2048
+_FEW = 0.5 - 0.5 * np.cos(np.pi * np.arange(6) / 5)
+"""Fractions of a cell that fix a polynomial of degree 5: Chebyshev's points, which lose no digits."""
+_CHECKED = np.linspace(0.0, 1.0, _CHECKS_PER_CELL + 1)
+_FROM_FEW = np.polynomial.chebyshev.chebvander(2 * _CHECKED - 1, 5) @ np.linalg.inv(
+    np.polynomial.chebyshev.chebvander(2 * _FEW - 1, 5))
+"""(n_checks, 6) values at the checks from those at the few."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1), 0.5 * _WEIGHTS
 
@@ -31,17 +38,25 @@ class StrokeMotions:
     cell_s: FloatArray
     n_periods: IntArray
 
-    def sample(self, path: int) -> FloatArray:
-        """(n_periods + 1, n_joints) positions of one stroke at its samples, both ends included."""
+    def samples(self) -> list[FloatArray]:
+        """(n_periods + 1, n_joints) positions of each stroke at its samples, both ends included."""
         starts = starts_of(self.paths.n_cells)
-        first, last = int(starts[path]), int(starts[path + 1])
-        n_periods = int(self.n_periods[path])
-        begins = np.concatenate(([0.0], np.cumsum(self.cell_s[first:last])))
-        times = np.arange(n_periods + 1) * (begins[-1] / n_periods)
-        times[-1] = begins[-1]
-        cell = np.clip(np.searchsorted(begins, times, side="right") - 1, 0, last - first - 1)
-        fraction = _fraction_after(self.three[first + cell], times - begins[cell], self.cell_s[first + cell])
-        return self.paths.at(first + cell, fraction)
+        counts = self.n_periods + 1
+        after = np.cumsum(self.cell_s)  # on one axis of time, stroke after stroke
+        begins = after - self.cell_s
+        begins_s, ends_s = begins[starts[:-1]], after[starts[1:] - 1]
+        number = within(counts)
+        times = np.repeat(begins_s, counts) + number * np.repeat((ends_s - begins_s) / self.n_periods, counts)
+        cell = np.clip(np.searchsorted(begins, times, side="right") - 1,
+                       np.repeat(starts[:-1], counts), np.repeat(starts[1:] - 1, counts))
+        fraction = _fraction_after(self.three[cell], times - begins[cell], self.cell_s[cell])
+        fraction[number == 0] = 0.0
+        fraction[number == np.repeat(self.n_periods, counts)] = 1.0
+        return np.split(self.paths.at(cell, fraction), np.cumsum(counts)[:-1])
+
+    def sample(self, path: int) -> FloatArray:
+        """(n_periods + 1, n_joints) the samples of one stroke."""
+        return self.samples()[path]
 
 
 def motions(paths: JointPaths, coefficients: FloatArray, limits: Limits, rate_hz: float) -> StrokeMotions:
@@ -52,36 +67,49 @@ def motions(paths: JointPaths, coefficients: FloatArray, limits: Limits, rate_hz
     first = np.repeat(starts_of(n_cells + 2)[:-1] - starts_of(n_cells)[:-1], n_cells) + np.arange(int(n_cells.sum()))
     three = np.column_stack([coefficients[first + k] for k in range(3)])
     slower = np.maximum.reduceat(_slowing_needed(paths, three, limits), starts_of(n_cells)[:-1])
-    durations = np.add.reduceat(_until(three, np.ones(len(three))), starts_of(n_cells)[:-1]) * np.maximum(slower, 1.0)
-    n_periods = np.maximum(np.ceil(durations * rate_hz - 1e-9).astype(np.int64), 1)
-    slower = np.maximum(slower, 1.0) * (n_periods / rate_hz) / durations
-    three = three / np.repeat(slower, n_cells)[:, None] ** 2
-    return StrokeMotions(paths, rate_hz, three, _until(three, np.ones(len(three))), n_periods)
+    slower = np.maximum(slower, 1.0)
+    cell_s = _until(three, np.ones(len(three)))
+    durations = np.add.reduceat(cell_s, starts_of(n_cells)[:-1])
+    n_periods = np.maximum(np.ceil(durations * slower * rate_hz - 1e-9).astype(np.int64), 1)
+    slower = np.repeat(n_periods / rate_hz / durations, n_cells)
+    return StrokeMotions(paths, rate_hz, three / slower[:, None] ** 2, cell_s * slower, n_periods)
 
 
 def _slowing_needed(paths: JointPaths, three: FloatArray, limits: Limits) -> FloatArray:
-    """(total cells,) factor by which each cell has to be slowed for all limits to hold throughout it."""
-    fractions = np.linspace(0.0, 1.0, _CHECKS_PER_CELL + 1)
+    """(total cells,) factor by which each cell has to be slowed for all limits to hold throughout it.
+
+    In a cell the acceleration, and the jerk divided by the rate, are polynomials of degrees 5 and 4: a few values
+    of each give all others by one product of matrices.
+    """
     needed = np.empty(len(three))
+    first = first_controls(paths.n_cells, DEGREE)
     for begin in range(0, len(three), _CELLS_AT_ONCE):
-        cells = np.arange(begin, min(begin + _CELLS_AT_ONCE, len(three)))
-        worst = np.zeros(len(cells))
-        for fraction in fractions:
-            q1, q2, q3 = (paths.at(cells, np.full(len(cells), fraction), k) for k in (1, 2, 3))
-            b, slope, bend = _rate_squared(three[cells], np.full(len(cells), fraction))
-            root = np.sqrt(b)[:, None]
-            b, slope, bend = b[:, None], slope[:, None], bend[:, None]
-            velocity = np.abs(q1 * root / limits.velocity).max(axis=1)
-            acceleration = np.abs((q2 * b + 0.5 * q1 * slope) / limits.acceleration).max(axis=1)
-            jerk = np.abs((q3 * b + 1.5 * q2 * slope + 0.5 * q1 * bend) * root / limits.jerk).max(axis=1)
-            worst = np.maximum(worst, np.maximum(velocity, np.maximum(np.sqrt(acceleration), np.cbrt(jerk))))
-        needed[cells] = worst
+        cells = slice(begin, begin + _CELLS_AT_ONCE)
+        q1, q2, q3 = (evaluate(paths.controls, first[cells], _FEW, DEGREE, k) for k in (1, 2, 3))
+        b, slope, bend = (rate[:, :, None] for rate in _rate_squared(three[cells, None], _FEW))
+        velocity = q1 / limits.velocity
+        acceleration = (q2 * b + 0.5 * q1 * slope) / limits.acceleration
+        jerk = (q3 * b + 1.5 * q2 * slope + 0.5 * q1 * bend) / limits.jerk
+        root = np.sqrt(_rate_squared(three[cells, None], _CHECKED)[0])
+        worst = _largest(velocity) * root
+        np.maximum(worst, np.sqrt(_largest(acceleration)), out=worst)
+        np.maximum(worst, np.cbrt(_largest(jerk) * root), out=worst)
+        needed[cells] = worst.max(axis=1)
     return needed
 
 
+def _largest(few: FloatArray) -> FloatArray:
+    """(n_cells, n_checks) the largest joint's size at all checks of each cell, from values (n_cells, n_few, n_joints)
+    of polynomials at a few fractions."""
+    largest = np.zeros((len(few), len(_FROM_FEW)))
+    for joint in range(few.shape[2]):
+        np.maximum(largest, np.abs(few[:, :, joint] @ _FROM_FEW.T), out=largest)
+    return largest
+
+
 def _rate_squared(three: FloatArray, fraction: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """b, b' and b'' (n,) at one fraction of each cell."""
-    c0, c1, c2 = three.T
+    """b, b' and b'' at fractions of cells: three (..., 3), the rest of it and `fraction` broadcast."""
+    c0, c1, c2 = three[..., 0], three[..., 1], three[..., 2]
     f = fraction
     b = 0.5 * c0 * (1 - f) ** 2 + c1 * (0.5 + f - f * f) + 0.5 * c2 * f * f
     return b, -c0 * (1 - f) + c1 * (1 - 2 * f) + c2 * f, c0 - 2 * c1 + c2
