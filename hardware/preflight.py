@@ -14,12 +14,14 @@ from planner.trajectory import Trajectory
 _FILE_ROUNDING = 1e-6
 """Joint positions come from a file with six decimals or more, in deg or mm."""
 
+_COUPLING_DEG = 1e-4
+
 
 def set_points(trajectory: Trajectory, arm: Arm, source: Path) -> FloatArray:
     """(n_samples, n_joints) set points in rad or mm, once every one of them is known to be safe to send.
 
-    The columns have to be the arm's joints, every sample within their positions and every step within their
-    velocities. Errors: TrajectoryFileError with the line of `source` and the joint.
+    The columns have to be the arm's joints, every sample within their positions and couplings and every step within
+    their velocities. Errors: TrajectoryFileError with the line of `source` and the joint.
     """
     if trajectory.columns != arm.column_names:
         raise TrajectoryFileError(
@@ -43,6 +45,14 @@ def set_points(trajectory: Trajectory, arm: Arm, source: Path) -> FloatArray:
         raise TrajectoryFileError(
             str(source), trajectory.line(sample + 1), f"joint {arm.joints[joint].name} comes here at "
             f"{steps[sample, joint] * trajectory.rate_hz:.4g} {unit}/s; its limit is {fastest[joint]:g} {unit}/s")
+    driven = arm.to_file_units(arm.complete(arm.from_file_units(trajectory.positions)[:, list(arm.free_joints)]))
+    uncoupled = np.abs(driven - trajectory.positions) > _COUPLING_DEG
+    if uncoupled.any():
+        sample, joint = _first(uncoupled)
+        raise TrajectoryFileError(
+            str(source), trajectory.line(sample), f"joint {arm.joints[joint].name} at "
+            f"{trajectory.positions[sample, joint]:.6g} deg breaks its coupling, which asks for"
+            f" {driven[sample, joint]:.6g}")
     positions: FloatArray = np.clip(arm.from_file_units(trajectory.positions), arm.minimum, arm.maximum)
     return positions
 

@@ -171,8 +171,10 @@ def read_trajectory(source: Path) -> Trajectory:
         raise TrajectoryFileError(
             name, first_line + len(table) - 1,
             f"the last sample is at {table[-1, 0]:g} s, the header promises {header.duration_s:g} s")
+    if not header.texts.get("arm"):
+        raise TrajectoryFileError(name, None, "names no arm (no '# arm:' line)")
     return Trajectory(
-        arm=header.texts.get("arm", ""), drawing=header.texts.get("drawing", ""),
+        arm=header.texts["arm"], drawing=header.texts.get("drawing", ""),
         method=header.texts.get("method", ""), rate_hz=rate_hz, columns=columns,
         positions=np.ascontiguousarray(table[:, 1:-2]), pen=table[:, -2] != 0, stroke=table[:, -1].astype(np.int64),
         svg_to_arm_mm=header.svg_to_arm_mm, first_line=first_line)
@@ -299,5 +301,6 @@ def _check_rows(name: str, table: FloatArray, rate_hz: float, first_line: int) -
     stroke = table[:, -1]
     refuse((stroke != np.round(stroke)) | (stroke < TRAVELLING), "stroke is not an index")
     refuse((table[:, -2] == 1) & (stroke == TRAVELLING), "the pen is down between strokes")
+    refuse((table[:, -2] == 0) & (stroke != TRAVELLING), "the pen is up within a stroke")
     drawn = np.maximum.accumulate(stroke)
     refuse((stroke >= 0) & (stroke < drawn), "strokes go backwards")

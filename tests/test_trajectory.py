@@ -29,7 +29,7 @@ def trajectories(draw: st.DrawFn) -> Trajectory:
     seed = draw(st.integers(0, 2**32 - 1))
     positions = np.random.default_rng(seed).uniform(-720, 720, (n, len(units)))
     return Trajectory(
-        arm=draw(words), drawing=draw(words), method=draw(words), rate_hz=draw(st.floats(0.1, 5000)),
+        arm=draw(words.filter(str.strip)), drawing=draw(words), method=draw(words), rate_hz=draw(st.floats(0.1, 5000)),
         columns=tuple(f"j{index}_{unit}" for index, unit in enumerate(units)), positions=positions, pen=pen,
         stroke=stroke, svg_to_arm_mm=draw(st.tuples(*[coordinates] * 6)))
 

@@ -21,7 +21,7 @@ from planner.inverse_kinematics.result import Solutions
 _CENTRING = 1e-3
 _TOLERANCE_MM = 1e-3
 _MOST_SETTLING = 50
-_ROOM = 2e-3
+_ROOM = 5e-3
 """Share of each joint's range kept from its limits, for the splines that join the postures of sparse targets."""
 
 

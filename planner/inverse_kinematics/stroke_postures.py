@@ -141,7 +141,7 @@ def _obstacle(arm: Arm, path: int, joints: FloatArray, tip_mm: FloatArray, exact
         low = joints[worst] < arm.minimum[worst]
         bound = joint.minimum if low else joint.maximum
         limit = f"{'lower' if low else 'upper'} limit {bound / joint.per_file_unit:g} {joint.file_unit}"
-        return Obstacle(path, tip, f"joint {joint.name} would be at {joints[worst] / joint.per_file_unit:.2f}"
+        return Obstacle(path, tip, f"joint {joint.name} would be at {joints[worst] / joint.per_file_unit:.4f}"
                         f" {joint.file_unit}, beyond its {limit}", joint.name, limit)
     kinematics = kinematics_of(arm)
     reached = kinematics.tip_mm(kinematics.free_of(joints)[None])[0]

@@ -46,6 +46,15 @@ def test_an_edited_cell_is_named_by_line_and_joint(
     assert caught.value.line == line
 
 
+def test_a_broken_coupling_is_named(arm: Arm, arc: Callable[..., Trajectory], tmp_path: Path) -> None:
+    source = tmp_path / "traj.csv"
+    line = _edited(arc(), source, "-30.000000000", "-30.010000000")
+    reason = "joint q5 at -30.01 deg breaks its coupling, which asks for -30"
+    with pytest.raises(TrajectoryFileError, match=reason) as caught:
+        set_points(read_trajectory(source), arm, source)
+    assert caught.value.line == line
+
+
 def test_another_arms_joints_are_refused(arm: Arm, arc: Callable[..., Trajectory], tmp_path: Path) -> None:
     foreign = replace(arc(), columns=("a_deg", "b_deg", "c_deg", "d_deg", "e_deg"))
     with pytest.raises(TrajectoryFileError, match=r"a_deg.*arm 'drawing_arm' has q1_deg"):
@@ -56,6 +65,7 @@ def test_rounding_at_a_limit_is_no_fault_and_is_clipped(
         arm: Arm, arc: Callable[..., Trajectory], tmp_path: Path) -> None:
     trajectory = arc()
     positions = trajectory.positions.copy()
-    positions[:, 1] = 180.0000005
+    positions[:, 1], positions[:, 2] = 180.0000005, -90.0
+    positions[:, 4] = -90.0 - positions[:, 1:4].sum(axis=1)
     points = set_points(replace(trajectory, positions=positions), arm, tmp_path)
     assert points[:, 1].max() <= arm.maximum[1]

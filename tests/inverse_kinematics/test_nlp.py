@@ -39,7 +39,7 @@ def test_a_limit_in_the_way_is_kept_by_moving_the_other_joints() -> None:
     tight = replace(arm, joints=(*arm.joints[:4], replace(arm.joints[4], maximum=bound)))
     found, good, _, _ = nlp_solver(tight).solve(target, before)
     assert good
-    room = 3e-3 * (bound - tight.minimum[4])  # the programme keeps a little from the limit
+    room = 6e-3 * (bound - tight.minimum[4])  # the programme keeps a little from the limit
     assert bound - room < tight.complete(found)[4] <= bound
     assert np.linalg.norm(tips_by_product(tight, tight.complete(found)[None])[0] - target) < 2e-3
 
