@@ -1,0 +1,127 @@
+"""The strokes of a drawing as the planner draws them, and their timing, stroke by stroke.
+
+The only door to the planner's own steps, so that all rows measure the same paths with the same limits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from planner import pipeline
+from planner.arms.arm import Arm
+from planner.arrays import FloatArray, IntArray
+from planner.drawing.svg import read_drawing
+from planner.inverse_kinematics.joint_path import DEGREE, JointPaths
+from planner.inverse_kinematics.stroke_postures import Obstacle, joint_paths
+from planner.placement.pen_path import PenPaths, smooth_paths
+from planner.ragged import starts_of
+from planner.settings import PlanSettings
+from planner.timing.limits import Limits
+from planner.timing.path_timing import FRACTIONS, TimingProblem, minimum_time
+from planner.timing.speed_cap import rate_cap
+from planner.timing.stroke_motion import StrokeMotions, motions
+
+UNROUNDED_HZ = 1e6
+"""A sample rate at which rounding up to whole periods is nothing."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class TimedPaths:
+    """Pen and joint paths of many strokes in the cells that they are timed with.
+
+    cap: (total cells,) on dsigma/dt at the left end of each cell; time_s: (n_paths,), all limits kept between the cell
+    ends as well, not rounded to sample periods.
+    """
+
+    pen: PenPaths
+    joints: JointPaths
+    cap: FloatArray
+    limits: Limits
+    motion: StrokeMotions
+    time_s: FloatArray
+    obstacles: list[Obstacle]
+
+    def single(self, path: int) -> SinglePath:
+        cells, controls = starts_of(self.joints.n_cells), starts_of(self.joints.n_cells + DEGREE)
+        joints = JointPaths(self.joints.n_cells[path:path + 1], self.joints.controls[controls[path]:controls[path + 1]])
+        return SinglePath(joints, self.cap[cells[path]:cells[path + 1]], self.limits, float(self.time_s[path]))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class SinglePath:
+    """One joint path over sigma in [0, n_cells], with the cap (n_cells,) on dsigma/dt and the planner's time."""
+
+    joints: JointPaths
+    cap: FloatArray
+    limits: Limits
+    time_s: float
+
+    @property
+    def n_cells(self) -> int:
+        return int(self.joints.n_cells[0])
+
+    def derivative(self, sigma: FloatArray, order: int) -> FloatArray:
+        """(n, n_joints)"""
+        cell: IntArray = np.clip(sigma.astype(np.int64), 0, self.n_cells - 1)
+        return self.joints.at(cell, sigma - cell, order)
+
+    def cap_at(self, sigma: FloatArray) -> FloatArray:
+        """(n,) the cap between the cell ends, joined by straight lines."""
+        return np.interp(sigma, np.arange(self.n_cells), self.cap)
+
+
+def drawings(folder: Path) -> list[Path]:
+    return sorted(folder.glob("*.svg"))
+
+
+def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> list[FloatArray]:
+    """Polylines (n, 2) in arm mm in drawing order; taps have one point."""
+    drawing = read_drawing(drawing_file)
+    svg_to_arm, _, _ = pipeline._placed(drawing, arm, settings, arm.pen.lift_mm)
+    strokes, _ = pipeline._strokes(drawing, svg_to_arm, arm, settings)
+    return strokes
+
+
+def lines(strokes: Sequence[FloatArray], longer_than_mm: float = 0.0) -> list[FloatArray]:
+    return [stroke for stroke in strokes if len(stroke) > 1 and length_mm(stroke) > longer_than_mm]
+
+
+def length_mm(stroke: FloatArray) -> float:
+    return float(np.hypot(*np.diff(stroke, axis=0).T).sum())
+
+
+def sharpest_turn_deg(stroke: FloatArray) -> float:
+    """Largest angle by which a polyline turns at a vertex."""
+    steps = np.diff(stroke, axis=0)
+    heading = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+    return float(np.rad2deg(np.abs(np.diff(heading)).max(initial=0.0)))
+
+
+def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings, speed_capped: bool = True) -> TimedPaths:
+    """The planner's timing of polylines; paths that cannot be followed are timed as well, and named."""
+    pen = smooth_paths(strokes, pipeline._SMOOTH_SHARE * settings.tolerance_mm)
+    joints, obstacles = joint_paths(arm, settings.method, pen)
+    for _ in range(pipeline._TIMING_HALVINGS):
+        pen, joints = pen.halved(), joints.halved()
+    limits = Limits.of(arm)
+    cap = rate_cap(pen, settings.speed_mm_s, pipeline._SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz
+                   ) if speed_capped else np.full(int(pen.n_cells.sum()), np.inf)
+    motion = motions(joints, minimum_time(problem_of(joints, limits, cap)), limits, UNROUNDED_HZ)
+    return TimedPaths(pen, joints, cap, limits, motion, motion.n_periods / UNROUNDED_HZ, obstacles)
+
+
+def timed_in_portions(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedPaths]:
+    """The same in portions of bounded size."""
+    ends = np.cumsum([len(stroke) for stroke in strokes]) // pipeline._CHUNK_POINTS
+    cuts = [0, *(np.flatnonzero(np.diff(ends)) + 1).tolist(), len(strokes)]
+    return [timed(arm, strokes[first:last], settings) for first, last in pairwise(cuts) if last > first]
+
+
+def problem_of(joints: JointPaths, limits: Limits, cap: FloatArray) -> TimingProblem:
+    derivatives = (joints.positions(FRACTIONS, 1), joints.positions(FRACTIONS, 2), joints.positions(FRACTIONS, 3))
+    return TimingProblem.of(joints.n_cells, derivatives, (limits.velocity, limits.acceleration, limits.jerk), cap)
