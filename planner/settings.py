@@ -24,6 +24,20 @@ class CanvasKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class PostureWeights:
+    """What method `path` spends the arm's redundancy on; only the ratios of the weights count.
+
+    time: little joint motion for a millimetre of pen; sensitivity: joint errors move the pen little across the
+    paper; reversals: joints that stand still rather than go back and forth (backlash); limits: away from them.
+    """
+
+    time: float = 1.0
+    sensitivity: float = 1.0
+    reversals: float = 1.0
+    limits: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
 class PlanSettings:
     """Settings of one plan.
 

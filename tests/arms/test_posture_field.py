@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from planner.arms.arm import Arm, Coupling, JointKind
 from planner.arms.arm_file import arms_folder, load_arm
 from planner.arms.kinematics import kinematics_of
-from planner.arms.posture_field import posture_field, slowest_direction_mm_s, within_limits
+from planner.arms.posture_field import posture_field, within_limits
+from planner.arms.posture_samples import slowest_direction_mm_s
 from planner.arms.projection import project
 from planner.arrays import FloatArray
 from planner.errors import ArmFileError, PlanError

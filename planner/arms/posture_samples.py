@@ -1,0 +1,119 @@
+"""Usable postures along the ray of azimuth zero: what a posture field is chosen from."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from planner.arms.arm import JointKind, PenHold
+from planner.arms.kinematics import Kinematics
+from planner.arms.projection import joint_scale, project
+from planner.arrays import BoolArray, FloatArray, IntArray
+
+COARSE_STEP_MM = 6.0
+"""Distance between the radii at which postures are sampled."""
+
+LIMIT_MARGIN = 0.02
+"""Share of a joint's range that postures keep from each end, so that lifts and blends have room."""
+
+_DRAWN = 20_000
+_SAMPLES = 120
+_FEW = 25
+
+
+def slowest_direction_mm_s(kinematics: Kinematics, free: FloatArray) -> FloatArray:
+    """(n,) tip speed that is possible in every direction, with the pen held as it is held and joint speeds of unit
+    norm in units of their limits: the smallest singular value of the tip's J diag(speed), restricted to motions
+    that do not turn the tool axis. Zero at a singular posture."""
+    _, jacobian = kinematics.task_and_jacobian(free)
+    jacobian = jacobian * joint_scale(kinematics)
+    tip, pointing = jacobian[:, :3], jacobian[:, 3:]
+    if pointing.shape[1]:
+        tip = tip - tip @ np.linalg.pinv(pointing) @ pointing
+    singular: FloatArray = np.asarray(np.linalg.svd(tip, compute_uv=False))
+    return singular[:, 2]
+
+
+def usable_postures(kinematics: Kinematics, free: FloatArray) -> BoolArray:
+    """(n,) whether postures on the ray keep limits with a margin, stay clear of singularities and above the paper."""
+    arm = kinematics.arm
+    joints = arm.complete(free)
+    room = LIMIT_MARGIN * (arm.maximum - arm.minimum)
+    inside = ((joints >= arm.minimum + room) & (joints <= arm.maximum - room)).all(axis=1)
+    clear = slowest_direction_mm_s(kinematics, free) >= arm.workspace.min_tip_speed_mm_s
+    above = (kinematics.nodes_mm(free)[:, :-1, 2] >= -1e-6).all(axis=1)
+    usable: BoolArray = inside & clear & above
+    if arm.pen.hold is PenHold.TOOL_AXIS:
+        usable &= kinematics.tool_axis(free)[:, 2] < -0.5  # the task alone would let the pen point straight up
+    return usable
+
+
+def on_ray(radii_mm: FloatArray) -> FloatArray:
+    return np.column_stack((radii_mm, np.zeros((len(radii_mm), 2))))
+
+
+def sampled_rays(kinematics: Kinematics) -> tuple[FloatArray, list[FloatArray]]:
+    """Usable postures at each of some radii: the random postures that come closest are projected onto the ray, and
+    those found at one radius are carried on to its neighbours where few were found."""
+    arm = kinematics.arm
+    random = np.random.default_rng(20220601)  # any seed will do; the same one always, for the same field
+    low, high = kinematics.free_of(arm.minimum), kinematics.free_of(arm.maximum)
+    drawn = random.uniform(low, high, (_DRAWN, kinematics.n_free))
+    task, _ = kinematics.task_and_jacobian(drawn)
+    drawn[:, 0] -= np.arctan2(task[:, 1], task[:, 0])  # turned about the base so that the tip is above the ray
+    if arm.pen.hold is PenHold.TOOL_AXIS:
+        downward = kinematics.tool_axis(drawn)[:, 2] < 0
+        drawn, task = drawn[downward], task[downward]
+    reach, height = np.hypot(task[:, 0], task[:, 1]), task[:, 2]
+    tilt = np.abs(task[:, 3:]).sum(axis=1)
+    longest = float(reach.max(initial=0.0)) + COARSE_STEP_MM
+    radii = np.arange(arm.workspace.inner_radius_mm, max(longest, arm.workspace.inner_radius_mm + 1), COARSE_STEP_MM)
+    count = min(_SAMPLES, len(drawn))
+    closest = [np.argpartition(np.hypot(reach - radius, height) / longest + tilt, count - 1)[:count]
+               for radius in radii]
+    pools: list[FloatArray] = [np.empty((0, kinematics.n_free)) for _ in radii]
+    _add_usable(kinematics, pools, np.repeat(np.arange(len(radii)), count), drawn[np.concatenate(closest)], radii, 20)
+    for order in (range(1, len(radii)), range(len(radii) - 2, -1, -1)):
+        for index in order:
+            neighbour = pools[index - order.step][:_SAMPLES]
+            if len(pools[index]) < _FEW and len(neighbour):
+                _add_usable(kinematics, pools, np.full(len(neighbour), index), neighbour, radii, 12)
+    return radii, pools
+
+
+def _add_usable(kinematics: Kinematics, pools: list[FloatArray], rays: IntArray, start: FloatArray, radii: FloatArray,
+                iterations: int) -> None:
+    """Project postures onto the rays they are meant for, and add what is usable to the rays' pools."""
+    found, exact = project(kinematics, start, on_ray(radii[rays]), iterations=iterations)
+    found, rays = found[exact], rays[exact]
+    joints = [kinematics.arm.joints[index] for index in kinematics.arm.free_joints]
+    turning = np.array([joint.kind is JointKind.REVOLUTE for joint in joints])
+    if not kinematics.arm.couplings:  # whole turns mean nothing where no other joint counts them
+        middle = kinematics.free_of((kinematics.arm.minimum + kinematics.arm.maximum) / 2)
+        turns = np.round((found - middle) / (2 * np.pi)) * turning
+        found = found - 2 * np.pi * turns
+    found[:, 0] = (found[:, 0] + np.pi) % (2 * np.pi) - np.pi
+    usable = usable_postures(kinematics, found)
+    for ray in np.unique(rays[usable]).tolist():
+        pools[ray] = np.concatenate((pools[ray], found[usable & (rays == ray)]))
+
+
+def stretched_to_edges(kinematics: Kinematics, radii: FloatArray, postures: FloatArray
+                        ) -> tuple[FloatArray, FloatArray]:
+    """The course with its two ends moved out to where postures stop being usable."""
+
+    def furthest(radius: float, posture: FloatArray, step: float, bound: float) -> tuple[float, FloatArray]:
+        while abs(step) > 0.01:
+            further = min(max(radius + step, bound), np.inf) if step < 0 else radius + step
+            if further == radius:
+                break
+            found, exact = project(kinematics, posture[None], on_ray(np.array([further])))
+            if exact[0] and usable_postures(kinematics, found)[0]:
+                radius, posture = further, found[0]
+            else:
+                step /= 2
+        return radius, posture
+
+    inner, first = furthest(float(radii[0]), postures[0], -COARSE_STEP_MM / 2,
+                            kinematics.arm.workspace.inner_radius_mm)
+    outer, last = furthest(float(radii[-1]), postures[-1], COARSE_STEP_MM / 2, 0.0)
+    return (np.concatenate(([inner], radii, [outer])), np.concatenate((first[None], postures, last[None])))
