@@ -13,6 +13,10 @@ class PlannerError(Exception):
 
     exit_code = 2
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Copied as it stands, without running its constructor again, so that one process can tell another."""
+        return BaseException.__new__, (type(self), *self.args), self.__dict__
+
 
 class UsageError(PlannerError):
     """An option or a combination of options that means nothing."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -13,7 +13,6 @@ from planner.affine import compose, rotation
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arms.canvas import canvas_of
-from planner.arms.kinematics import kinematics_of
 from planner.arms.posture_field import posture_field
 from planner.arrays import BoolArray, FloatArray
 from planner.drawing.drawing import Drawing
@@ -22,32 +21,36 @@ from planner.drawing.join import join_strokes
 from planner.drawing.order import order_strokes
 from planner.drawing.svg import read_drawing
 from planner.errors import PlanError, TargetOutOfReach, UsageError
-from planner.inverse_kinematics.stroke_postures import Obstacle, exact_postures, joint_paths, postures_at
+from planner.inverse_kinematics.stroke_postures import Obstacle
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
-from planner.placement.pen_path import smooth_paths
+from planner.portions import (
+    SAMPLE_SHARE,
+    SMOOTH_SHARE,
+    Kit,
+    TimedStroke,
+    hop_portions,
+    make_ready,
+    planned_hops,
+    stroke_portions,
+    timed_strokes,
+)
 from planner.settings import PlanSettings
 from planner.summary import PhaseTimes, PlanSummary
-from planner.timing.hops import Hop, HopRules, Touch, plan_hops
+from planner.timing.hops import Hop, HopRules
 from planner.timing.limits import Limits
-from planner.timing.path_timing import FRACTIONS, TimingProblem, minimum_time
-from planner.timing.speed_cap import rate_cap
-from planner.timing.stroke_motion import motions
 from planner.trajectory import TRAVELLING, Trajectory
+from planner.workers import ALONE, Crew, Workers, crew_of
 
 Report = Callable[[str, int, int], None]
 """Told the stage, how much of it is done, and how much there is."""
 
-_FLATTEN_SHARE, _JOIN_SHARE, _SMOOTH_SHARE, _SAMPLE_SHARE = 0.1, 0.1, 0.5, 0.4
-"""Shares of the tolerance: chords for curves, gaps that are closed, rounded corners, and the straight
-lines between samples."""
+_FLATTEN_SHARE = _JOIN_SHARE = 0.5 * (1.0 - SMOOTH_SHARE - SAMPLE_SHARE)
+"""Shares of the tolerance that are left for chords in the place of curves, and for gaps that are closed."""
 
-_CHUNK_POINTS = 6000
-_TIMING_HALVINGS = 2
-"""How often the cells of a path are cut in two before it is timed: jerk switches at cell ends only, and cells as
-long as the corners that they go round are too coarse for that."""
-_TAP_S = 0.05
-"""How long a tap rests on the paper at least: a pen needs a moment to leave a dot."""
+_SMALL_BYTES = 60_000
+"""Drawings in shorter files, of a few thousand points, are done sooner than worker processes have started."""
+_BLOCK_SAMPLES = 65_536
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -56,35 +59,40 @@ class Plan:
     summary: PlanSummary
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _TimedStroke:
-    """A stroke ready to be drawn: joint samples (n, n_joints) and where it touches down and lifts off."""
-
-    joints: FloatArray
-    first: Touch
-    last: Touch
-    dwell_samples: int
-
-
-def plan(drawing_file: Path, settings: PlanSettings, report: Report) -> Plan:
-    """Plan one drawing. Errors: PlannerError, before any result exists."""
-    arm = load_arm(settings.arm)
+def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Workers = ALONE) -> Plan:
+    """Plan one drawing. The result is the same whoever does the work. Errors: PlannerError, before any result
+    exists."""
+    kit = Kit.of(load_arm(settings.arm), settings)
+    arm = kit.arm
     lift_mm = arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
     if lift_mm < arm.pen.clearance_mm:
         raise UsageError(f"a lift of {lift_mm:g} mm is below the arm's pen clearance of {arm.pen.clearance_mm:g} mm")
-    report("reading", 0, 1)
-    drawing = read_drawing(drawing_file)
-    svg_to_arm, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
-    report("ordering strokes", 0, 1)
-    strokes, warnings = _strokes(drawing, svg_to_arm, arm, settings)
-    timed, lost = _timed_strokes(arm, strokes, settings, report)
+    with crew_of(_worth_hiring(workers, drawing_file)) as crew:
+        getting_ready = crew(make_ready, [kit] * workers.count)  # while this process reads
+        report("reading", 0, 1)
+        drawing = read_drawing(drawing_file)
+        svg_to_arm, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
+        strokes, warnings = _strokes(drawing, svg_to_arm, arm, settings)
+        report("ordering strokes", 0, 1)
+        canvas = canvas_of(arm, settings.canvas, arm.pen.lift_mm)
+        strokes = order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)))
+        for _ in getting_ready:
+            pass
+        timed, lost = _timed_strokes(crew, kit, strokes, report)
+        hops = _hops(crew, kit, timed, lift_mm, report)
     warnings += lost
-    report("travels", 0, len(timed) + 1)
-    hops = _hops(arm, timed, settings, lift_mm)
-    report("travels", len(timed) + 1, len(timed) + 1)
     trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, timed, hops)
     _verify(trajectory, arm)
     return Plan(trajectory, _summary(trajectory, strokes, timed, hops, scale, size_mm, drawing, warnings))
+
+
+def _worth_hiring(workers: Workers, drawing_file: Path) -> Workers:
+    """The workers, or none beside this process where a drawing is too small for them."""
+    try:
+        is_small = drawing_file.stat().st_size < _SMALL_BYTES
+    except OSError:  # its reader says what is wrong with it
+        return ALONE
+    return ALONE if is_small and workers.cluster is None else workers
 
 
 def _placed(drawing: Drawing, arm: Arm, settings: PlanSettings, lift_mm: float
@@ -101,7 +109,7 @@ def _placed(drawing: Drawing, arm: Arm, settings: PlanSettings, lift_mm: float
 
 def _strokes(drawing: Drawing, svg_to_arm: FloatArray, arm: Arm, settings: PlanSettings
              ) -> tuple[list[FloatArray], list[str]]:
-    """Strokes in drawing order, (n, 2) arm mm, and what was left out on the way."""
+    """Strokes (n, 2), arm mm, and what was left out on the way."""
     warnings = []
     if drawing.skipped:
         counts = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
@@ -114,9 +122,7 @@ def _strokes(drawing: Drawing, svg_to_arm: FloatArray, arm: Arm, settings: PlanS
             warnings.append(f"out of reach and left out: {lost_mm:.1f} mm of line; {lost_whole} strokes or taps whole")
         if not strokes:
             raise PlanError("nothing of the drawing is within reach")
-    canvas = canvas_of(arm, settings.canvas, arm.pen.lift_mm)
-    corner = canvas.to_arm_mm(np.zeros(2))
-    return order_strokes(strokes, corner), warnings
+    return strokes, warnings
 
 
 def _reachable(arm: Arm) -> Callable[[FloatArray], BoolArray]:
@@ -132,133 +138,83 @@ def _reachable(arm: Arm) -> Callable[[FloatArray], BoolArray]:
     return reachable
 
 
-def _chunks(strokes: Sequence[FloatArray]) -> Iterator[list[int]]:
-    """Indices of neighbouring strokes, in portions of bounded size."""
-    chunk: list[int] = []
-    points = 0
-    for index, stroke in enumerate(strokes):
-        chunk.append(index)
-        points += len(stroke)
-        if points >= _CHUNK_POINTS:
-            yield chunk
-            chunk, points = [], 0
-    if chunk:
-        yield chunk
-
-
-def _timed_strokes(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings, report: Report
-                   ) -> tuple[list[_TimedStroke], list[str]]:
+def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: Report
+                   ) -> tuple[list[TimedStroke], list[str]]:
     """Joint samples of all strokes that can be drawn; those that cannot are left out if the user wants so."""
-    timed: list[_TimedStroke] = []
-    lost = 0
-    for chunk in _chunks(strokes):
-        report("drawing motions", chunk[0], len(strokes))
-        lines = [index for index in chunk if len(strokes[index]) > 1]
-        taps = [index for index in chunk if len(strokes[index]) == 1]
-        made: dict[int, _TimedStroke | Obstacle] = {}
-        if lines:
-            made.update(zip(lines, _timed_lines(arm, [strokes[index] for index in lines], settings), strict=True))
-        if taps:
-            made.update(zip(taps, _timed_taps(arm, np.concatenate([strokes[index] for index in taps]), settings),
-                            strict=True))
-        for index in chunk:
-            result = made[index]
-            if isinstance(result, Obstacle):
-                if not settings.skip_unreachable:
-                    nearest = int(np.argmin(np.hypot(*(strokes[index] - result.tip_mm).T)))
-                    raise TargetOutOfReach(index, nearest, result.tip_mm, result.reason, result.joint, result.limit)
+    settings = kit.settings
+    timed: list[TimedStroke] = []
+    done = lost = 0
+    report("drawing motions", 0, len(strokes))
+    for results in crew(timed_strokes, stroke_portions(kit, strokes)):
+        for index, result in enumerate(results, done):
+            if not isinstance(result, Obstacle):
+                timed.append(result)
+            elif settings.skip_unreachable:
                 lost += 1
             else:
-                timed.append(result)
-    report("drawing motions", len(strokes), len(strokes))
+                nearest = int(np.argmin(np.hypot(*(strokes[index] - result.tip_mm).T)))
+                raise TargetOutOfReach(index, nearest, result.tip_mm, result.reason, result.joint, result.limit)
+        done += len(results)
+        report("drawing motions", done, len(strokes))
     if not timed:
         raise PlanError("nothing of the drawing can be drawn within the joint limits")
     return timed, [f"left out whole, as method {settings.method} cannot draw them: {lost} strokes"] if lost else []
 
 
-def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[_TimedStroke | Obstacle]:
-    paths = smooth_paths(strokes, _SMOOTH_SHARE * settings.tolerance_mm)
-    splines, obstacles = joint_paths(arm, settings.method, paths)
-    if obstacles and not settings.skip_unreachable:
-        blocked = {obstacle.path: obstacle for obstacle in obstacles}
-        return [blocked.get(index, obstacles[0]) for index in range(len(strokes))]
-    if obstacles:
-        blocked = {obstacle.path: obstacle for obstacle in obstacles}
-        open_ways = [index for index in range(len(strokes)) if index not in blocked]
-        rest = iter(_timed_lines(arm, [strokes[index] for index in open_ways], settings) if open_ways else ())
-        return [blocked[index] if index in blocked else next(rest) for index in range(len(strokes))]
-    limits = Limits.of(arm)
-    for _ in range(_TIMING_HALVINGS):
-        paths, splines = paths.halved(), splines.halved()
-    derivatives = (splines.positions(FRACTIONS, 1), splines.positions(FRACTIONS, 2), splines.positions(FRACTIONS, 3))
-    problem = TimingProblem.of(paths.n_cells, derivatives, (limits.velocity, limits.acceleration, limits.jerk),
-                               rate_cap(paths, settings.speed_mm_s, _SAMPLE_SHARE * settings.tolerance_mm,
-                                        settings.rate_hz))
-    motion = motions(splines, minimum_time(problem), limits, settings.rate_hz)
-    kinematics = kinematics_of(arm)
-    dwell = round(settings.dwell_s * settings.rate_hz)
-    timed: list[_TimedStroke | Obstacle] = []
-    for stroke, joints in zip(strokes, motion.samples(), strict=True):
-        free = kinematics.free_of(joints)
-        timed.append(_TimedStroke(joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell))
-    return timed
-
-
-def _timed_taps(arm: Arm, tips_mm: FloatArray, settings: PlanSettings) -> list[_TimedStroke | Obstacle]:
-    tips = np.column_stack((tips_mm, np.zeros(len(tips_mm))))
-    free, obstacles = exact_postures(arm, postures_at(arm, settings.method, tips), tips)
-    blocked = {obstacle.path: obstacle for obstacle in obstacles}
-    joints = arm.complete(free)
-    rest = max(round(max(settings.dwell_s, _TAP_S) * settings.rate_hz), 1)
-    touches = [Touch(tip, posture) for tip, posture in zip(tips_mm, free, strict=True)]
-    return [blocked.get(index) or _TimedStroke(joints[index:index + 1], touch, touch, rest)
-            for index, touch in enumerate(touches)]
-
-
-def _hops(arm: Arm, timed: Sequence[_TimedStroke], settings: PlanSettings, lift_mm: float) -> list[Hop]:
+def _hops(crew: Crew, kit: Kit, timed: Sequence[TimedStroke], lift_mm: float, report: Report) -> list[Hop]:
     """The pen-up moves before, between and after the strokes."""
+    arm, settings = kit.arm, kit.settings
     rules = HopRules(arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz)
     leave = [None, *(stroke.last for stroke in timed)]
     meet = [*(stroke.first for stroke in timed), None]
     hops: list[Hop] = []
-    for begin in range(0, len(leave), _HOPS_AT_ONCE):
-        part = slice(begin, begin + _HOPS_AT_ONCE)
-        hops += plan_hops(kinematics_of(arm), Limits.of(arm), rules, leave[part], meet[part])
-    for index, hop in enumerate(hops):
-        if not hop.exact:
-            raise PlanError(f"the pen-up move before stroke {index} leaves the joint limits"
-                            f" of arm {arm.name}; try another --method, a smaller --lift or a larger --margin")
+    for made in crew(planned_hops, hop_portions(kit, rules, leave, meet)):
+        for index, hop in enumerate(made, len(hops)):
+            if not hop.exact:
+                raise PlanError(f"the pen-up move before stroke {index} leaves the joint limits"
+                                f" of arm {arm.name}; try another --method, a smaller --lift or a larger --margin")
+        hops += made
+        report("travels", len(hops), len(leave))
     return hops
 
 
-_HOPS_AT_ONCE = 500
-
-
 def _assembled(arm: Arm, drawing_file: Path, settings: PlanSettings, svg_to_arm: FloatArray,
-               timed: Sequence[_TimedStroke], hops: Sequence[Hop]) -> Trajectory:
+               timed: Sequence[TimedStroke], hops: Sequence[Hop]) -> Trajectory:
     """All samples in order. Hops and strokes share the samples where they meet; these count as drawn."""
-    pieces, strokes = [hops[0].joints[:-1]], [np.full(len(hops[0].joints) - 1, TRAVELLING)]
-    for index, (stroke, hop) in enumerate(zip(timed, hops[1:], strict=True)):
-        joints = np.concatenate((np.repeat(stroke.joints[:1], stroke.dwell_samples, axis=0), stroke.joints))
-        pieces += [joints, hop.joints[1:-1] if index + 1 < len(timed) else hop.joints[1:]]
-        strokes += [np.full(len(joints), index), np.full(len(pieces[-1]), TRAVELLING)]
-    stroke_column = np.concatenate(strokes)
+    n_samples = (sum(stroke.dwell_samples + len(stroke.joints) for stroke in timed)
+                 + sum(len(hop.joints) for hop in hops) - 2 * len(timed))
+    positions = np.empty((n_samples, len(arm.joints)))
+    strokes = np.full(n_samples, TRAVELLING)
+    end = 0
+    for index, hop in enumerate(hops):
+        begin, end = end, end + len(hop.joints) - (index > 0) - (index < len(timed))
+        first = 1 if index else 0
+        positions[begin:end] = arm.to_file_units(hop.joints[first:first + end - begin])
+        if index < len(timed):
+            stroke = timed[index]
+            begin, resting, end = end, end + stroke.dwell_samples, end + stroke.dwell_samples + len(stroke.joints)
+            strokes[begin:end] = index
+            positions[begin:resting] = arm.to_file_units(stroke.joints[:1])
+            positions[resting:end] = arm.to_file_units(stroke.joints)
     (a, c, e), (b, d, f) = svg_to_arm.tolist()
     return Trajectory(
         arm=settings.arm, drawing=drawing_file.name, method=settings.method.value, rate_hz=settings.rate_hz,
-        columns=arm.column_names, positions=arm.to_file_units(np.concatenate(pieces)),
-        pen=stroke_column != TRAVELLING, stroke=stroke_column, svg_to_arm_mm=(a, b, c, d, e, f))
+        columns=arm.column_names, positions=positions, pen=strokes != TRAVELLING, stroke=strokes,
+        svg_to_arm_mm=(a, b, c, d, e, f))
 
 
 def _verify(trajectory: Trajectory, arm: Arm) -> None:
     """Every limit, once more, on the samples as they will be written."""
-    slowing = Limits.of(arm).slowing_of(arm.from_file_units(trajectory.positions), 1 / trajectory.rate_hz)
+    limits, period_s = Limits.of(arm), 1 / trajectory.rate_hz
+    slowing = max(  # blocks overlap by the three samples that a third difference looks back
+        limits.slowing_of(arm.from_file_units(trajectory.positions[begin:begin + _BLOCK_SAMPLES + 3]), period_s)
+        for begin in range(0, trajectory.n_samples, _BLOCK_SAMPLES))
     if slowing > 1 + 1e-6:
         raise PlanError(f"the timing exceeds a joint limit by {100 * (slowing - 1):.3f} % of speed:"
                         " a defect of the planner, please report it with the drawing")
 
 
-def _summary(trajectory: Trajectory, strokes: Sequence[FloatArray], timed: Sequence[_TimedStroke], hops: Sequence[Hop],
+def _summary(trajectory: Trajectory, strokes: Sequence[FloatArray], timed: Sequence[TimedStroke], hops: Sequence[Hop],
              scale: float, size_mm: tuple[float, float], drawing: Drawing, warnings: list[str]) -> PlanSummary:
     period = 1 / trajectory.rate_hz
     phases = PhaseTimes(

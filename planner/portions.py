@@ -1,0 +1,170 @@
+"""The parts of a plan that are made apart from each other: neighbouring strokes in time, and hops between them.
+
+A portion says all that is needed to make it, so that any process can.
+"""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from planner.arms.arm import Arm
+from planner.arms.kinematics import kinematics_of
+from planner.arms.posture_field import posture_field
+from planner.arrays import FloatArray
+from planner.inverse_kinematics.stroke_postures import Obstacle, exact_postures, joint_paths, postures_at
+from planner.placement.pen_path import smooth_paths
+from planner.settings import PlanSettings
+from planner.timing.hops import Hop, HopRules, Touch, plan_hops
+from planner.timing.limits import Limits
+from planner.timing.path_timing import FRACTIONS, TimingProblem, minimum_time
+from planner.timing.speed_cap import rate_cap
+from planner.timing.stroke_motion import motions
+
+SMOOTH_SHARE, SAMPLE_SHARE = 0.5, 0.4
+"""Shares of the tolerance: rounded corners, and the straight lines between samples."""
+
+_PORTION_POINTS = 2000
+_PORTION_HOPS = 125
+_TIMING_HALVINGS = 2
+"""How often the cells of a path are cut in two before it is timed: jerk switches at cell ends only, and cells as
+long as the corners that they go round are too coarse for that."""
+_TAP_S = 0.05
+"""How long a tap rests on the paper at least: a pen needs a moment to leave a dot."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class TimedStroke:
+    """A stroke ready to be drawn: joint samples (n, n_joints) and where it touches down and lifts off."""
+
+    joints: FloatArray
+    first: Touch
+    last: Touch
+    dwell_samples: int
+
+
+@dataclass(frozen=True, slots=True)
+class Kit:
+    """What every portion of a plan needs: the arm, pickled, so that a process builds its models of it once, and the
+    settings."""
+
+    pickled_arm: bytes
+    settings: PlanSettings
+
+    @staticmethod
+    def of(arm: Arm, settings: PlanSettings) -> Kit:
+        return Kit(pickle.dumps(arm), settings)
+
+    @property
+    def arm(self) -> Arm:
+        return _unpickled(self.pickled_arm)
+
+
+@lru_cache(maxsize=4)
+def _unpickled(pickled_arm: bytes) -> Arm:
+    arm: Arm = pickle.loads(pickled_arm)  # noqa: S301  # pickled by `Kit.of`, never read from a file
+    return arm
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class StrokePortion:
+    """Neighbouring strokes (n, 2), arm mm."""
+
+    kit: Kit
+    strokes: Sequence[FloatArray]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class HopPortion:
+    """Neighbouring hops: where each leaves and meets the paper, None at the ends of the drawing."""
+
+    kit: Kit
+    rules: HopRules
+    leave: Sequence[Touch | None]
+    meet: Sequence[Touch | None]
+
+
+def stroke_portions(kit: Kit, strokes: Sequence[FloatArray]) -> Iterator[StrokePortion]:
+    """Strokes cut into portions of bounded size: by the drawing alone, never by who makes them."""
+    first = points = 0
+    for index, stroke in enumerate(strokes):
+        points += len(stroke)
+        if points >= _PORTION_POINTS or index + 1 == len(strokes):
+            yield StrokePortion(kit, strokes[first:index + 1])
+            first, points = index + 1, 0
+
+
+def hop_portions(kit: Kit, rules: HopRules, leave: Sequence[Touch | None], meet: Sequence[Touch | None]
+                 ) -> Iterator[HopPortion]:
+    """Hops cut into portions, likewise."""
+    for begin in range(0, len(leave), _PORTION_HOPS):
+        part = slice(begin, begin + _PORTION_HOPS)
+        yield HopPortion(kit, rules, leave[part], meet[part])
+
+
+def make_ready(kit: Kit) -> None:
+    """Build what the first portion would have to wait for."""
+    posture_field(kit.arm)
+
+
+def timed_strokes(portion: StrokePortion) -> list[TimedStroke | Obstacle]:
+    """Joint samples of each stroke, or why it cannot be drawn."""
+    arm, settings, strokes = portion.kit.arm, portion.kit.settings, portion.strokes
+    lines = [index for index, stroke in enumerate(strokes) if len(stroke) > 1]
+    taps = [index for index, stroke in enumerate(strokes) if len(stroke) == 1]
+    made: dict[int, TimedStroke | Obstacle] = {}
+    if lines:
+        made.update(zip(lines, _timed_lines(arm, [strokes[index] for index in lines], settings), strict=True))
+    if taps:
+        made.update(zip(taps, _timed_taps(arm, np.concatenate([strokes[index] for index in taps]), settings),
+                        strict=True))
+    return [made[index] for index in range(len(strokes))]
+
+
+def planned_hops(portion: HopPortion) -> list[Hop]:
+    """The hops of a portion."""
+    arm = portion.kit.arm
+    return plan_hops(kinematics_of(arm), Limits.of(arm), portion.rules, portion.leave, portion.meet)
+
+
+def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedStroke | Obstacle]:
+    paths = smooth_paths(strokes, SMOOTH_SHARE * settings.tolerance_mm)
+    splines, obstacles = joint_paths(arm, settings.method, paths)
+    if obstacles and not settings.skip_unreachable:
+        blocked = {obstacle.path: obstacle for obstacle in obstacles}
+        return [blocked.get(index, obstacles[0]) for index in range(len(strokes))]
+    if obstacles:
+        blocked = {obstacle.path: obstacle for obstacle in obstacles}
+        open_ways = [index for index in range(len(strokes)) if index not in blocked]
+        rest = iter(_timed_lines(arm, [strokes[index] for index in open_ways], settings) if open_ways else ())
+        return [blocked[index] if index in blocked else next(rest) for index in range(len(strokes))]
+    limits = Limits.of(arm)
+    for _ in range(_TIMING_HALVINGS):
+        paths, splines = paths.halved(), splines.halved()
+    derivatives = (splines.positions(FRACTIONS, 1), splines.positions(FRACTIONS, 2), splines.positions(FRACTIONS, 3))
+    problem = TimingProblem.of(paths.n_cells, derivatives, (limits.velocity, limits.acceleration, limits.jerk),
+                               rate_cap(paths, settings.speed_mm_s, SAMPLE_SHARE * settings.tolerance_mm,
+                                        settings.rate_hz))
+    motion = motions(splines, minimum_time(problem), limits, settings.rate_hz)
+    kinematics = kinematics_of(arm)
+    dwell = round(settings.dwell_s * settings.rate_hz)
+    timed: list[TimedStroke | Obstacle] = []
+    for stroke, joints in zip(strokes, motion.samples(), strict=True):
+        free = kinematics.free_of(joints)
+        timed.append(TimedStroke(joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell))
+    return timed
+
+
+def _timed_taps(arm: Arm, tips_mm: FloatArray, settings: PlanSettings) -> list[TimedStroke | Obstacle]:
+    tips = np.column_stack((tips_mm, np.zeros(len(tips_mm))))
+    free, obstacles = exact_postures(arm, postures_at(arm, settings.method, tips), tips)
+    blocked = {obstacle.path: obstacle for obstacle in obstacles}
+    joints = arm.complete(free)
+    rest = max(round(max(settings.dwell_s, _TAP_S) * settings.rate_hz), 1)
+    touches = [Touch(tip, posture) for tip, posture in zip(tips_mm, free, strict=True)]
+    return [blocked.get(index) or TimedStroke(joints[index:index + 1], touch, touch, rest)
+            for index, touch in enumerate(touches)]
