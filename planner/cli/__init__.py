@@ -13,6 +13,7 @@ from planner.cli.terminal import print_lines, print_note
 from planner.errors import PlannerError
 
 TRACEBACK_VARIABLE = "PLAN_TRACEBACK"
+_THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 EXIT_INTERRUPTED = 130
 EXIT_NO_MEMORY = 2
 EXIT_DEFECT = 70
@@ -21,6 +22,8 @@ EXIT_DEFECT = 70
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; the exit code. Every error ends as one line on standard error."""
+    for variable in _THREAD_VARIABLES:  # before NumPy is loaded: its matrices here are too small to share out
+        os.environ.setdefault(variable, "1")
     try:
         try:
             return _command(list(sys.argv[1:] if argv is None else argv))
@@ -48,6 +51,10 @@ def _command(arguments: list[str]) -> int:
     """A first argument that names a command is that command; anything else is planned."""
     name, rest = (arguments[0], arguments[1:]) if arguments else ("", [])
     match name:
+        case "batch":
+            from planner.cli.batch import batch
+
+            return batch(rest)
         case "run":
             from planner.cli.run import run
 

@@ -17,12 +17,14 @@ from planner.cli.quantities import (
     speed_mm_s,
 )
 from planner.cli.terminal import print_lines, print_warnings, progress
+from planner.cli.workers import add_workers_option
 from planner.settings import CanvasKind, Method, PlanSettings
 
 _DESCRIPTION = """\
 Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a trajectory of joint positions.
 
 other commands (each has its own --help; a drawing of that name is planned as ./NAME):
+  plan batch FOLDER         plan every drawing of a folder
   plan run traj.csv         play a trajectory on the simulated arm
   plan check traj.csv       an independent verdict on a trajectory
   plan plot traj.csv -o F   pictures of a trajectory
@@ -33,6 +35,7 @@ examples:
   plan flower.svg                                  writes flower.csv into the current folder
   plan flower.svg -o traj.csv --arm my_arm.toml    for an arm of your own
   plan flower.svg --speed 4cm/s --margin 0.5in --rotate 90
+  plan city.svg --workers 4                        with four processes; the result does not depend on them
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
 
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
@@ -47,13 +50,13 @@ def plan(arguments: list[str]) -> int:
     drawing: Path = options.drawing
     target: Path = options.output or Path(drawing.with_suffix(".csv").name)
     check_target(target, drawing)
-    settings = _settings(options)
+    settings = settings_of(options)
 
     from planner.pipeline import plan as plan_drawing
     from planner.trajectory import write_trajectory
 
     with progress(quiet=options.quiet) as show:
-        planned = plan_drawing(drawing, settings, show)
+        planned = plan_drawing(drawing, settings, show, options.workers)
         write_trajectory(planned.trajectory, target)
     print_warnings(planned.summary.warnings)
     if not options.quiet:
@@ -61,7 +64,8 @@ def plan(arguments: list[str]) -> int:
     return 0
 
 
-def _settings(options: argparse.Namespace) -> PlanSettings:
+def settings_of(options: argparse.Namespace) -> PlanSettings:
+    """The settings that options from `add_plan_options` amount to."""
     return PlanSettings(
         arm=options.arm, method=Method(options.method), rate_hz=options.rate, tolerance_mm=options.tolerance,
         speed_mm_s=options.speed, lowering_speed_mm_s=options.lowering_speed, dwell_s=options.dwell,
@@ -71,13 +75,20 @@ def _settings(options: argparse.Namespace) -> PlanSettings:
 
 def _parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
-    parser.usage = "plan DRAWING.svg [-o traj.csv] [options]\n       plan run|check|plot|arm ..."
-    default = PlanSettings()
+    parser.usage = "plan DRAWING.svg [-o traj.csv] [options]\n       plan batch|run|check|plot|arm ..."
     parser.add_argument("drawing", type=Path, metavar="DRAWING.svg")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE",
                         help="the trajectory (default: the drawing's name with .csv, in the current folder)")
+    add_plan_options(parser)
+    return parser
+
+
+def add_plan_options(parser: Parser) -> None:
+    """The options that say how drawings are planned, whether one or many."""
+    default = PlanSettings()
     parser.add_argument("--arm", default=default.arm, metavar="NAME|FILE",
                         help="an arm by name, or its .toml file (default: %(default)s)")
+    add_workers_option(parser)
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary, only warnings and errors")
 
     motion = parser.add_argument_group("motion")
@@ -107,4 +118,3 @@ def _parser() -> Parser:
                            help="turn the drawing before placing it (default: %(default)g)")
     placement.add_argument("--skip-unreachable", action="store_true",
                            help="leave out what the arm cannot reach, and say so, instead of failing")
-    return parser

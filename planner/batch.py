@@ -1,0 +1,73 @@
+"""Many drawings, each planned by itself: one that fails does not stop the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from planner.errors import OutputError, PlannerError, UsageError
+from planner.pipeline import plan
+from planner.settings import PlanSettings
+from planner.summary import PlanSummary
+from planner.trajectory import write_trajectory
+from planner.workers import ALONE, Workers, crew_of
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """A drawing and the file that its trajectory goes to."""
+
+    drawing: Path
+    target: Path
+    settings: PlanSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a drawing: a summary, or the error that says why there is none."""
+
+    job: Job
+    summary: PlanSummary | None
+    error: PlannerError | MemoryError | None
+
+
+def jobs_of(folder: Path, out_folder: Path, settings: PlanSettings) -> list[Job]:
+    """A job for each SVG of a folder, by name; `out_folder` is made if it is missing. Errors: UsageError,
+    OutputError."""
+    try:
+        drawings = sorted(path for path in folder.iterdir() if path.suffix.lower() == ".svg" and path.is_file())
+    except OSError as error:
+        raise UsageError(f"{folder} cannot be read as a folder: {error.strerror}") from error
+    if not drawings:
+        raise UsageError(f"there are no drawings (.svg) in {folder}")
+    jobs = [Job(drawing, out_folder / f"{drawing.stem}.csv", settings) for drawing in drawings]
+    targets = [job.target for job in jobs]
+    for job in jobs:
+        if targets.count(job.target) > 1:
+            raise UsageError(f"several drawings would be written to {job.target}: rename one of them")
+    try:
+        out_folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(str(out_folder), error.strerror or str(error)) from error
+    return jobs
+
+
+def plan_all(jobs: Sequence[Job], workers: Workers) -> Iterator[Outcome]:
+    """Plan and write all drawings, at most one a worker at a time; outcomes come in the order of the jobs. A
+    cluster has to see the same files under the same names."""
+    with crew_of(workers if len(jobs) > 1 else ALONE) as crew:
+        yield from crew(_planned, jobs)
+
+
+def _planned(job: Job) -> Outcome:
+    try:
+        result = plan(job.drawing, job.settings, _unheard)
+        write_trajectory(result.trajectory, job.target)
+    except (PlannerError, MemoryError) as error:
+        return Outcome(job, None, error)
+    return Outcome(job, result.summary, None)
+
+
+def _unheard(stage: str, done: int, total: int) -> None:
+    """Progress within a drawing: with many of them, whole drawings are counted instead."""

@@ -1,0 +1,86 @@
+"""`plan batch FOLDER`: a trajectory for each drawing of a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from planner.cli.parser import Parser
+from planner.cli.plan import add_plan_options, settings_of
+from planner.cli.terminal import print_lines, print_note, print_warnings, progress
+
+if TYPE_CHECKING:
+    from planner.batch import Outcome
+
+_DESCRIPTION = """\
+Plan every drawing (.svg) of a folder, each into a trajectory of its own name. Drawings are shared out among the
+workers; one that cannot be planned is named and does not stop the others."""
+
+_EPILOG = """\
+examples:
+  plan batch drawings                              writes drawings/NAME.csv for each drawings/NAME.svg
+  plan batch drawings -o trajectories --arm scara --workers 8
+  plan batch drawings --workers tcp://10.0.0.5:8786   on a Dask cluster that sees the same folders (extra 'dask')
+
+exit codes: 0 all planned; else the highest code among the drawings: 2 unusable input; 3 cannot be planned"""
+
+_NO_MEMORY_CODE = 2
+
+
+def batch(arguments: list[str]) -> int:
+    """Plan all drawings of a folder. Errors: PlannerError where no drawing can be begun."""
+    options = _parser().parse_args(arguments)
+    folder: Path = options.folder
+    settings = settings_of(options)
+
+    from planner.batch import jobs_of, plan_all
+
+    jobs = jobs_of(folder, options.output or folder, settings)
+    outcomes: list[Outcome] = []
+    with progress(quiet=options.quiet) as show:
+        show("drawings", 0, len(jobs))
+        for outcome in plan_all(jobs, options.workers):
+            outcomes.append(outcome)
+            show("drawings", len(outcomes), len(jobs))
+    for outcome in outcomes:
+        if outcome.summary is not None:
+            print_warnings(f"{outcome.job.drawing.name}: {warning}" for warning in outcome.summary.warnings)
+        elif isinstance(outcome.error, MemoryError):
+            print_note(f"error: {outcome.job.drawing.name}: not enough memory")
+        else:
+            print_note(f"error: {outcome.job.drawing.name}: {outcome.error}")
+    if not options.quiet:
+        print_lines(_table(outcomes))
+    return max(_exit_code(outcome) for outcome in outcomes)
+
+
+def _exit_code(outcome: Outcome) -> int:
+    if outcome.error is None:
+        return 0
+    return _NO_MEMORY_CODE if isinstance(outcome.error, MemoryError) else outcome.error.exit_code
+
+
+def _table(outcomes: Sequence[Outcome]) -> list[str]:
+    """Aligned columns, a drawing a line, and how many there are."""
+    width = max(len("drawing"), *(len(outcome.job.drawing.name) for outcome in outcomes))
+    lines = [f"{'drawing':<{width}}  strokes  drawn m  takes s  trajectory"]
+    for outcome in outcomes:
+        name, summary = outcome.job.drawing.name, outcome.summary
+        if summary is None:
+            lines.append(f"{name:<{width}}  {'-':>7}  {'-':>7}  {'-':>7}  none")
+        else:
+            lines.append(f"{name:<{width}}  {summary.n_strokes:>7}  {summary.drawn_mm / 1000:>7.2f}"
+                         f"  {summary.duration_s:>7.1f}  {outcome.job.target}")
+    planned = sum(outcome.summary is not None for outcome in outcomes)
+    return [*lines, f"{planned} of {len(outcomes)} drawings planned"]
+
+
+def _parser() -> Parser:
+    parser = Parser("plan batch", _DESCRIPTION, _EPILOG)
+    parser.usage = "plan batch FOLDER [-o OUTFOLDER] [options of plan]"
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    parser.add_argument("-o", "--output", type=Path, metavar="OUTFOLDER",
+                        help="where the trajectories go, made if missing (default: beside the drawings)")
+    add_plan_options(parser)
+    return parser
