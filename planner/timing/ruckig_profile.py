@@ -1,4 +1,4 @@
-"""The doorway to Ruckig: jerk-limited motion of one coordinate from rest to rest.
+"""The doorway to Ruckig: jerk-limited motion of one coordinate from rest to rest, or to where it turns round.
 
 Only state-to-state motion of one coordinate is asked of it: several synchronised axes would bend the
 path, and waypoints would make it call a cloud service.
@@ -18,7 +18,8 @@ from planner.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class RestToRest:
-    """A time-optimal move from 0 to `distance`, at rest at both ends.
+    """A time-optimal move from 0 to `distance`, at rest at both ends, but for the braking that may be left where it
+    turns round.
 
     begins_s: (8,) when each of its seven pieces of constant jerk begins, and when the last one ends; states: (8,)
     position, velocity, acceleration and jerk at these times.
@@ -31,6 +32,10 @@ class RestToRest:
     @property
     def duration_s(self) -> float:
         return self.begins_s[-1]
+
+    @property
+    def highest_speed(self) -> float:
+        return max(abs(velocity) for _, velocity, _, _ in self.states)
 
     def at(self, times_s: FloatArray) -> FloatArray:
         """(n,) positions at times (n,); before the start 0, after the end `distance`."""
@@ -57,11 +62,17 @@ class RestToRest:
         return self.begins_s[piece] + after
 
 
-def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: float) -> RestToRest:
-    """The fastest such move within the limits, all in units of the coordinate; distance >= 0, limits > 0."""
+def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: float, turning: float = 0.0
+                 ) -> RestToRest:
+    """The fastest such move within the limits, all in units of the coordinate; distance >= 0, limits > 0.
+
+    turning: braking that is left at the end, where the coordinate turns round rather than rests; less than both
+    `acceleration` and `sqrt(2 jerk velocity)`.
+    """
     request = ruckig.InputParameter(1)
     request.current_position, request.target_position = [0.0], [distance]
     request.max_velocity, request.max_acceleration, request.max_jerk = [velocity], [acceleration], [jerk]
+    request.target_acceleration = [-turning]
     trajectory = ruckig.Trajectory(1)
     result = ruckig.Ruckig(1).calculate(request, trajectory)
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
