@@ -12,9 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from planner import pipeline
+from planner import pipeline, portions
 from planner.arms.arm import Arm
+from planner.arms.canvas import canvas_of
 from planner.arrays import FloatArray, IntArray
+from planner.drawing.order import order_strokes
 from planner.drawing.svg import read_drawing
 from planner.inverse_kinematics.joint_path import DEGREE, JointPaths
 from planner.inverse_kinematics.stroke_postures import Obstacle, joint_paths
@@ -84,7 +86,7 @@ def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> list
     drawing = read_drawing(drawing_file)
     svg_to_arm, _, _ = pipeline._placed(drawing, arm, settings, arm.pen.lift_mm)
     strokes, _ = pipeline._strokes(drawing, svg_to_arm, arm, settings)
-    return strokes
+    return order_strokes(strokes, canvas_of(arm, settings.canvas, arm.pen.lift_mm).to_arm_mm(np.zeros(2)))
 
 
 def lines(strokes: Sequence[FloatArray], longer_than_mm: float = 0.0) -> list[FloatArray]:
@@ -102,22 +104,21 @@ def sharpest_turn_deg(stroke: FloatArray) -> float:
     return float(np.rad2deg(np.abs(np.diff(heading)).max(initial=0.0)))
 
 
-def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings, speed_capped: bool = True) -> TimedPaths:
+def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> TimedPaths:
     """The planner's timing of polylines; paths that cannot be followed are timed as well, and named."""
-    pen = smooth_paths(strokes, pipeline._SMOOTH_SHARE * settings.tolerance_mm)
+    pen = smooth_paths(strokes, portions.SMOOTH_SHARE * settings.tolerance_mm)
     joints, obstacles = joint_paths(arm, settings.method, pen)
-    for _ in range(pipeline._TIMING_HALVINGS):
+    for _ in range(portions._TIMING_HALVINGS):
         pen, joints = pen.halved(), joints.halved()
     limits = Limits.of(arm)
-    cap = rate_cap(pen, settings.speed_mm_s, pipeline._SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz
-                   ) if speed_capped else np.full(int(pen.n_cells.sum()), np.inf)
+    cap = rate_cap(pen, settings.speed_mm_s, portions.SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz)
     motion = motions(joints, minimum_time(problem_of(joints, limits, cap)), limits, UNROUNDED_HZ)
     return TimedPaths(pen, joints, cap, limits, motion, motion.n_periods / UNROUNDED_HZ, obstacles)
 
 
 def timed_in_portions(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedPaths]:
     """The same in portions of bounded size."""
-    ends = np.cumsum([len(stroke) for stroke in strokes]) // pipeline._CHUNK_POINTS
+    ends = np.cumsum([len(stroke) for stroke in strokes]) // portions._PORTION_POINTS
     cuts = [0, *(np.flatnonzero(np.diff(ends)) + 1).tolist(), len(strokes)]
     return [timed(arm, strokes[first:last], settings) for first, last in pairwise(cuts) if last > first]
 

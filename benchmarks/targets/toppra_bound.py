@@ -44,7 +44,8 @@ def bound_s(path: SinglePath) -> float:
     grid = _grid(path.n_cells) / rate
 
     def speeds(parameter: float) -> FloatArray:
-        most = np.append(path.limits.velocity, min(float(path.cap_at(np.array([parameter * rate]))[0]) / rate, _FASTEST))
+        cap = float(path.cap_at(np.array([parameter * rate]))[0]) / rate
+        most = np.append(path.limits.velocity, min(cap, _FASTEST))
         return np.column_stack((-most, most))
 
     most = np.append(path.limits.acceleration, 1e8)

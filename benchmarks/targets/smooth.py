@@ -1,0 +1,85 @@
+"""Pen-down time of smooth strokes beside TOPP-RA's bound, and of any strokes beside the third-order optimum."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.targets.fine_nlp import least_time_s
+from benchmarks.targets.row import Row, missing
+from benchmarks.targets.strokes import drawings, lines, placed_strokes, sharpest_turn_deg, timed
+from benchmarks.targets.toppra_bound import bound_s
+from planner.arms.arm_file import load_arm
+from planner.arrays import FloatArray
+from planner.settings import PlanSettings
+from tests.timing.slp import least_time_s as least_time_slp_s
+
+_SMOOTH_DEG = 15.0
+"""A stroke is smooth where its polyline turns by no more than this at any vertex."""
+_OF_EACH = 20
+_COMPARED_CELLS = 700
+_COMPARED_OF_EACH = 3
+_SMALL_CELLS = 200
+_SMALL = 6
+
+
+def against_toppra(folder: Path, settings: PlanSettings) -> list[Row]:
+    what = (f"pen-down time of smooth strokes over 20 mm (no vertex turns more than {_SMOOTH_DEG:g}°,"
+            f" at most {_OF_EACH} a drawing) against TOPP-RA without jerk limits")
+    target = "≤ 1.05"
+    if absent := missing("toppra", what, target):
+        return [absent]
+    arm = load_arm(settings.arm)
+    ratios, times = [], []
+    for drawing in drawings(folder):
+        strokes = [stroke for stroke in lines(placed_strokes(drawing, arm, settings), 20.0)
+                   if sharpest_turn_deg(stroke) <= _SMOOTH_DEG]
+        if not strokes:
+            continue
+        paths = timed(arm, _spread(strokes, _OF_EACH), settings)
+        for path in range(len(paths.time_s)):
+            bound = bound_s(paths.single(path))
+            if np.isfinite(bound):
+                ratios.append(paths.time_s[path] / bound)
+                times.append(paths.time_s[path])
+    if not ratios:
+        return [Row(what, target, "no such strokes")]
+    total = float(np.sum(times) / np.sum(np.divide(times, ratios)))
+    return [Row(what, target, f"{total:.3f} of {len(ratios)} strokes together; by stroke median"
+                f" {np.median(ratios):.3f}, worst {np.max(ratios):.3f}, within the target {np.mean(np.array(ratios) <= 1.05):.0%}",
+                total <= 1.05)]
+
+
+def against_optimum(folder: Path, settings: PlanSettings) -> list[Row]:
+    arm = load_arm(settings.arm)
+    fine, small = [], []
+    gave_up = 0
+    for drawing in drawings(folder):
+        paths = timed(arm, _spread(lines(placed_strokes(drawing, arm, settings)), 8 * _COMPARED_OF_EACH), settings)
+        order = np.flatnonzero(paths.joints.n_cells <= _COMPARED_CELLS)[:_COMPARED_OF_EACH]
+        for path in order.tolist():
+            single = paths.single(path)
+            least = least_time_s(single, finer=3)
+            gave_up += not np.isfinite(least)
+            if np.isfinite(least):
+                fine.append(single.time_s / least)
+            if single.n_cells <= _SMALL_CELLS and len(small) < _SMALL:
+                least = least_time_slp_s(single.derivative, single.n_cells, single.limits, single.cap_at, finer=2)
+                small.append(single.time_s / least)
+    return [
+        _share("any stroke against the third-order optimum: nonlinear programme on three times finer cells, Ipopt"
+               + (f" (which gave up on {gave_up})" if gave_up else ""), fine),
+        _share("the same by sequential linear programmes on twice finer cells, HiGHS (small strokes)", small)]
+
+
+def _share(what: str, ratios: list[float]) -> Row:
+    if not ratios:
+        return Row(what, "≤ 1.01", "no stroke small enough")
+    return Row(what, "≤ 1.01", f"of {len(ratios)} strokes median {np.median(ratios):.4f}, worst {max(ratios):.4f}",
+               max(ratios) <= 1.01)
+
+
+def _spread(strokes: list[FloatArray], most: int) -> list[FloatArray]:
+    """So many of them, evenly chosen."""
+    return [strokes[index] for index in np.unique(np.linspace(0, len(strokes) - 1, most).astype(int)).tolist()]
