@@ -11,7 +11,8 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+import warnings
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
@@ -58,6 +59,8 @@ def crew_of(workers: Workers) -> Iterator[Crew]:
     from joblib import Parallel, delayed, parallel_config
 
     with ExitStack() as until_done:
+        until_done.enter_context(warnings.catch_warnings())
+        warnings.filterwarnings("ignore", ".*have been cancelled", UserWarning)  # whoever gives up half-way knows
         if workers.cluster is None:
             # One thread of linear algebra a process; no files in shared memory, which a kill would leave behind.
             until_done.enter_context(parallel_config(
@@ -69,7 +72,9 @@ def crew_of(workers: Workers) -> Iterator[Crew]:
         parallel = until_done.enter_context(Parallel(return_as="generator", batch_size=1, pre_dispatch="3*n_jobs"))
 
         def crew(work: Callable[[Portion], Result], portions: Iterable[Portion]) -> Iterator[Result]:
-            results: Iterator[Result] = parallel(delayed(work)(portion) for portion in portions)
+            with _interrupts_ignored():  # as the processes will that start now
+                results: Generator[Result, None, None] = parallel(delayed(work)(portion) for portion in portions)
+            until_done.callback(results.close)
             return results
 
         yield crew
@@ -77,6 +82,20 @@ def crew_of(workers: Workers) -> Iterator[Crew]:
 
 def _in_turn(work: Callable[[Portion], Result], portions: Iterable[Portion]) -> Iterator[Result]:
     return map(work, portions)
+
+
+@contextmanager
+def _interrupts_ignored() -> Iterator[None]:
+    """Processes started in here never know Ctrl-C: one that it meets half-way through its start would leave its
+    parent waiting."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _settle_in(parent: int) -> None:

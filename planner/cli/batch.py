@@ -46,10 +46,9 @@ def batch(arguments: list[str]) -> int:
     for outcome in outcomes:
         if outcome.summary is not None:
             print_warnings(f"{outcome.job.drawing.name}: {warning}" for warning in outcome.summary.warnings)
-        elif isinstance(outcome.error, MemoryError):
-            print_note(f"error: {outcome.job.drawing.name}: not enough memory")
         else:
-            print_note(f"error: {outcome.job.drawing.name}: {outcome.error}")
+            reason = "not enough memory" if isinstance(outcome.error, MemoryError) else str(outcome.error)
+            print_note(f"error: {outcome.job.drawing.name}: {reason.removeprefix(f'{outcome.job.drawing.name}: ')}")
     if not options.quiet:
         print_lines(_table(outcomes))
     return max(_exit_code(outcome) for outcome in outcomes)
