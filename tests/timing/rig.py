@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import BSpline
+from scipy.interpolate import BSpline, PPoly
 
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import DEGREE, JointPaths, interpolate
@@ -59,20 +59,24 @@ def joint_curve(paths: JointPaths, index: int) -> BSpline[np.float64]:
                    paths.controls[first:first + n_cells + DEGREE], DEGREE)
 
 
-def rate_curve(motion: StrokeMotions, index: int) -> BSpline[np.float64]:
-    """(dsigma/dt)^2 of one stroke as SciPy's spline over sigma, from the coefficients of its cells."""
+def rate_curve(motion: StrokeMotions, index: int) -> PPoly:
+    """(dsigma/dt)^2 of one stroke as SciPy's piecewise polynomial over sigma."""
     first, n_cells = int(motion.paths.n_cells[:index].sum()), int(motion.paths.n_cells[index])
-    cells = motion.three[first:first + n_cells]
-    return BSpline(np.arange(-2, n_cells + 3, dtype=np.float64), np.concatenate((cells[:, 0], cells[-1, 1:])), 2)
+    return rates_over_sigma(motion.rates[first:first + n_cells])
 
 
-def duration_s(rate: BSpline[np.float64], n_cells: int, per_cell: int = 400) -> float:
+def rates_over_sigma(rates: FloatArray) -> PPoly:
+    """Cubics (n_cells, 4) of the fraction, lowest power first, as one function of sigma."""
+    return PPoly(rates.T[::-1], np.arange(len(rates) + 1, dtype=np.float64))
+
+
+def duration_s(rate: PPoly, n_cells: int, per_cell: int = 400) -> float:
     """The integral of 1 / sqrt(b) over sigma, by midpoints."""
     sigma = (np.arange(n_cells * per_cell) + 0.5) / per_cell
     return float((1 / np.sqrt(rate(sigma))).sum() / per_cell)
 
 
-def rates_by_formula(curve: BSpline[np.float64], rate: BSpline[np.float64], sigma: FloatArray
+def rates_by_formula(curve: BSpline[np.float64], rate: PPoly, sigma: FloatArray
                      ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Joint velocity, acceleration and jerk (n, n_joints) by the chain rule, off the knots."""
     q1, q2, q3 = (curve.derivative(order)(sigma) for order in (1, 2, 3))

@@ -75,7 +75,8 @@ def ruckig_s(curve: BSpline[np.float64], n_cells: int, limits: Limits) -> float:
 def test_within_a_hundredth_of_the_least_time_by_linear_programmes(name: str, cap: float) -> None:
     paths = as_timed(LINES[name])
     least = least_s(paths, LIMITS, cap)
-    assert 0.998 * least <= taken_s(paths, LIMITS, cap) <= 1.01 * least
+    # The programmes' b has a constant second derivative in each cell, the planner's a linear one: it may do better.
+    assert 0.98 * least <= taken_s(paths, LIMITS, cap) <= 1.01 * least
 
 
 def test_the_linear_programmes_find_the_known_least_time() -> None:
@@ -91,7 +92,7 @@ def test_the_linear_programmes_find_the_known_least_time() -> None:
 def test_near_the_least_time_on_any_line(line: FloatArray) -> None:
     paths = polar_paths([line]).halved()
     least = least_s(paths, LIMITS)
-    assert 0.995 * least <= taken_s(paths, LIMITS) <= 1.05 * least
+    assert 0.95 * least <= taken_s(paths, LIMITS) <= 1.05 * least
 
 
 @settings(deadline=None, max_examples=12)
