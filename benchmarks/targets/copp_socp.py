@@ -1,8 +1,8 @@
 """The planner's timing beside COPP's TOPP3-SOCP on one smooth path in as many cells.
 
-The path is a figure of eight, Lissajous' of 1 : 2, on the arm's canvas. Both get the same joint curves: COPP over the pen's arc length, from
-rest to rest, linearised about its TOPP2-RA solution and then, as its documentation recommends where that comes near
-zero, once more about its own; the planner over a sigma that the arc length follows with its cube near both ends.
+The path is Lissajous' figure of 1 : 2, an eight, on the arm's canvas. Both get the same joint curves: COPP over the
+pen's arc length, from rest to rest, linearised about its TOPP2-RA solution and then once more about its own, as it
+advises where that comes near zero; the planner over a sigma that the arc length follows with its cube near both ends.
 No cap on the pen's speed.
 """
 
@@ -48,10 +48,11 @@ def against_copp(settings: PlanSettings) -> list[Row]:
     ours_s, ours_run_s = _planner(curve, limits)
     (once_s, once_run_s), (twice_s, twice_run_s) = _copp(curve, limits, 1), _copp(curve, limits, 2)
     return [
-        Row(what + ": trajectory", targets[0], f"{ours_s:.4f} s; COPP {once_s:.4f} s in one pass, {twice_s:.4f} s in two:"
-            f" {ours_s / min(once_s, twice_s):.4f} of the better", ours_s <= min(once_s, twice_s)),
-        Row(what + ": computing", targets[1], f"{1e3 * ours_run_s:.0f} ms; COPP {1e3 * once_run_s:.0f} ms in one pass,"
-            f" {1e3 * twice_run_s:.0f} ms in two: 1/{once_run_s / ours_run_s:.1f} of one", ours_run_s <= once_run_s / 3)]
+        Row(what + ": trajectory", targets[0],
+            f"{ours_s:.4f} s; COPP {once_s:.4f} s in one pass, {twice_s:.4f} s in two: {ours_s / min(once_s, twice_s):.4f} of the better", ours_s <= min(once_s, twice_s)),
+        Row(what + ": computing", targets[1],
+            f"{1e3 * ours_run_s:.0f} ms; COPP {1e3 * once_run_s:.0f} ms in one pass, {1e3 * twice_run_s:.0f} ms in two:"
+            f" 1/{once_run_s / ours_run_s:.1f} of one", ours_run_s <= once_run_s / 3)]
 
 
 def _lissajous(arm: Arm, settings: PlanSettings) -> BSpline[np.float64]:

@@ -46,9 +46,9 @@ def against_toppra(folder: Path, settings: PlanSettings) -> list[Row]:
     if not ratios:
         return [Row(what, target, "no such strokes")]
     total = float(np.sum(times) / np.sum(np.divide(times, ratios)))
+    within = float(np.mean(np.array(ratios) <= 1.05))
     return [Row(what, target, f"{total:.3f} of {len(ratios)} strokes together; by stroke median"
-                f" {np.median(ratios):.3f}, worst {np.max(ratios):.3f}, within the target {np.mean(np.array(ratios) <= 1.05):.0%}",
-                total <= 1.05)]
+                f" {np.median(ratios):.3f}, worst {np.max(ratios):.3f}, within the target {within:.0%}", total <= 1.05)]
 
 
 def against_optimum(folder: Path, settings: PlanSettings) -> list[Row]:

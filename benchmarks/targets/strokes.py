@@ -46,7 +46,6 @@ class TimedPaths:
     limits: Limits
     motion: StrokeMotions
     time_s: FloatArray
-    obstacles: list[Obstacle]
 
     def single(self, path: int) -> SinglePath:
         cells, controls = starts_of(self.joints.n_cells), starts_of(self.joints.n_cells + DEGREE)
@@ -104,16 +103,22 @@ def sharpest_turn_deg(stroke: FloatArray) -> float:
     return float(np.rad2deg(np.abs(np.diff(heading)).max(initial=0.0)))
 
 
-def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> TimedPaths:
-    """The planner's timing of polylines; paths that cannot be followed are timed as well, and named."""
+def followed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
+             ) -> tuple[PenPaths, JointPaths, list[Obstacle]]:
+    """Pen and joint paths of polylines, and those that cannot be followed, before timing."""
     pen = smooth_paths(strokes, portions.SMOOTH_SHARE * settings.tolerance_mm)
-    joints, obstacles = joint_paths(arm, settings.method, pen)
+    return pen, *joint_paths(arm, settings.method, pen)
+
+
+def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> TimedPaths:
+    """The planner's timing of polylines, those that cannot be followed as well."""
+    pen, joints, _ = followed(arm, strokes, settings)
     for _ in range(portions._TIMING_HALVINGS):
         pen, joints = pen.halved(), joints.halved()
     limits = Limits.of(arm)
     cap = rate_cap(pen, settings.speed_mm_s, portions.SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz)
     motion = motions(joints, minimum_time(problem_of(joints, limits, cap)), limits, UNROUNDED_HZ)
-    return TimedPaths(pen, joints, cap, limits, motion, motion.n_periods / UNROUNDED_HZ, obstacles)
+    return TimedPaths(pen, joints, cap, limits, motion, motion.n_periods / UNROUNDED_HZ)
 
 
 def timed_in_portions(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedPaths]:

@@ -92,7 +92,8 @@ def _time_s(points: list[csr_array], x: FloatArray, step: float) -> float:
     values = [at @ x for at in points]
     if min(value.min() for value in values) <= 0:
         return float("inf")
-    return float(sum(step * weight * (1 / np.sqrt(value)).sum() for value, weight in zip(values, _SIMPSON, strict=True)))
+    return float(sum(step * weight * (1 / np.sqrt(value)).sum()
+                     for value, weight in zip(values, _SIMPSON, strict=True)))
 
 
 def _steady_b(derivative: Derivative, nodes: FloatArray, limits: Limits, ceiling: FloatArray) -> float:

@@ -1,0 +1,100 @@
+"""The planner beside its targets and its rivals, as one table: same machine, same run.
+
+    python benchmarks/table.py FOLDER_OF_DRAWINGS [-o docs/benchmarks.md] [--only NAME ...]
+
+The rivals come with the extra `benchmark`; a row whose rival is not installed says so. Rows about one drawing take
+prague.svg of the folder, or the drawing with the most bytes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import sys
+import time
+from collections.abc import Callable
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+from benchmarks.targets import copp_socp, postures, smooth, speed, whole
+from benchmarks.targets.row import Row, markdown
+from benchmarks.targets.strokes import drawings
+from planner.errors import PlannerError
+from planner.settings import PlanSettings
+
+Measure = Callable[[Path, Path, PlanSettings], list[Row]]
+"""Folder, the one drawing, and settings to rows."""
+
+MEASURES: dict[str, Measure] = {
+    "toppra": lambda folder, _, settings: smooth.against_toppra(folder, settings),
+    "optimum": lambda folder, _, settings: smooth.against_optimum(folder, settings),
+    "copp": lambda _, __, settings: copp_socp.against_copp(settings),
+    "stopping": lambda folder, _, settings: whole.limits_and_stopping(folder, settings),
+    "dls": lambda _, drawing, settings: postures.against_dls(drawing, settings),
+    "limits": lambda _, drawing, settings: postures.limits_of_narrow_arms(drawing, settings),
+    "phases": lambda folder, _, settings: whole.phases_and_order(folder, settings),
+    "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),
+    "postures": lambda _, drawing, settings: speed.postures(drawing, settings),
+    "end-to-end": lambda _, drawing, settings: speed.end_to_end(drawing, settings),
+}
+LIBRARIES = ("numpy", "scipy", "casadi", "ruckig", "toppra", "copp-py")
+
+
+def machine() -> str:
+    """Processor, cores, Python and library versions."""
+    versions = []
+    for library in LIBRARIES:
+        try:
+            versions.append(f"{library} {version(library)}")
+        except PackageNotFoundError:
+            versions.append(f"no {library}")
+    return (f"{_processor()}, {os.cpu_count()} cores; {platform.system()}, Python {platform.python_version()}; "
+            + ", ".join(versions))
+
+
+def _processor() -> str:
+    try:
+        described = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    names = [line.split(":", 1)[1].strip() for line in described if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("-o", "--output", type=Path, help="Markdown file; without it, standard output")
+    parser.add_argument("--only", action="append", choices=list(MEASURES), help="measure this alone; may be repeated")
+    parser.add_argument("--arm", default=PlanSettings().arm)
+    options = parser.parse_args()
+    found = drawings(options.folder)
+    if not found:
+        parser.error(f"no .svg files in {options.folder}")
+    drawing = next((one for one in found if one.stem == "prague"), max(found, key=lambda one: one.stat().st_size))
+    settings = PlanSettings(arm=options.arm)
+    rows: list[Row] = []
+    for name in options.only or MEASURES:
+        began = time.perf_counter()
+        try:
+            measured = MEASURES[name](options.folder, drawing, settings)
+        except PlannerError as error:
+            measured = [Row(name, "", str(error))]
+        rows += measured
+        print(f"{name}: {time.perf_counter() - began:.1f} s", *(row.markdown() for row in measured), sep="\n",
+              file=sys.stderr, flush=True)
+    text = "\n".join(["# Benchmarks", "", f"{datetime.now(UTC):%Y-%m-%d}. {machine()}.", "",
+                      f"Arm {settings.arm}, {len(found)} drawings, tolerance {settings.tolerance_mm:g} mm, pen at most"
+                      f" {settings.speed_mm_s:g} mm/s. Made by `python benchmarks/table.py`.", "", markdown(rows), ""])
+    if options.output is None:
+        print(text)
+    else:
+        options.output.write_text(text)
+
+
+if __name__ == "__main__":
+    main()
