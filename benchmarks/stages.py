@@ -17,7 +17,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Any
 
-from planner import pipeline
+from planner import pipeline, portions
 from planner.errors import PlannerError
 from planner.settings import Method, PlanSettings
 from planner.trajectory import write_trajectory
@@ -59,7 +59,8 @@ def main() -> None:
     order = pipeline.order_strokes
     pipeline.order_strokes = ordered
     for name, stage in STAGES.items():
-        setattr(pipeline, name, _counted(getattr(pipeline, name), stage, spent))
+        module = pipeline if hasattr(pipeline, name) else portions
+        setattr(module, name, _counted(getattr(module, name), stage, spent))
     drawings = sorted(options.folder.glob("*.svg"))
     if not drawings:
         parser.error(f"no .svg files in {options.folder}")

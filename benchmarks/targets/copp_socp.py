@@ -49,7 +49,8 @@ def against_copp(settings: PlanSettings) -> list[Row]:
     (once_s, once_run_s), (twice_s, twice_run_s) = _copp(curve, limits, 1), _copp(curve, limits, 2)
     return [
         Row(what + ": trajectory", targets[0],
-            f"{ours_s:.4f} s; COPP {once_s:.4f} s in one pass, {twice_s:.4f} s in two: {ours_s / min(once_s, twice_s):.4f} of the better", ours_s <= min(once_s, twice_s)),
+            f"{ours_s:.4f} s; COPP {once_s:.4f} s in one pass, {twice_s:.4f} s in two:"
+            f" {ours_s / min(once_s, twice_s):.4f} of the better", ours_s <= min(once_s, twice_s)),
         Row(what + ": computing", targets[1],
             f"{1e3 * ours_run_s:.0f} ms; COPP {1e3 * once_run_s:.0f} ms in one pass, {1e3 * twice_run_s:.0f} ms in two:"
             f" 1/{once_run_s / ours_run_s:.1f} of one", ours_run_s <= once_run_s / 3)]

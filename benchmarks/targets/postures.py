@@ -52,15 +52,16 @@ def against_dls(drawing: Path, settings: PlanSettings) -> list[Row]:
 
 
 def limits_of_narrow_arms(drawing: Path, settings: PlanSettings) -> list[Row]:
-    """Strokes placed on the canvas of each arm: what DLS breaks, and what the default method does instead."""
-    narrowed = narrow(load_arm(settings.arm))
-    measured = load_arm("drawing_arm_2022")
+    """What DLS breaks, and what the default method does instead. The narrowed arm is given strokes on the canvas of
+    the whole one, so that there is something to break."""
+    whole, measured = load_arm(settings.arm), load_arm("drawing_arm_2022")
     rows = []
-    for arm, name in ((measured, measured.name), (narrowed, f"{narrowed.name}, windows narrowed by a third")):
+    for arm, placed_for, name in ((measured, measured, measured.name),
+                                  (narrow(whole), whole, f"{whole.name}, windows narrowed by a third")):
         what = f"limit violations of {drawing.stem} on {name}"
         target = "DLS: report; path: none, or refused with the reason"
         try:
-            strokes = lines(placed_strokes(drawing, arm, settings))
+            strokes = lines(placed_strokes(drawing, placed_for, settings))
             path, dls = (figures(arm, strokes, replace(settings, method=method))
                          for method in (settings.method, Method.DLS))
         except PlannerError as error:

@@ -127,4 +127,5 @@ def tolerances(drawing: Path, settings: PlanSettings) -> list[Row]:
         portions = timed_in_portions(arm, lines(placed_strokes(drawing, arm, coarser)), coarser)
         times.append(sum(float(paths.time_s.sum()) for paths in portions))
     asked = ", ".join(f"{tolerance_mm:g}" for tolerance_mm in _TOLERANCES_MM)
-    return [Row(f"pen-down time of {drawing.stem} at tolerance {asked} mm", "report", ", ".join(f"{time_s:.1f} s" for time_s in times))]
+    return [Row(f"pen-down time of {drawing.stem} at tolerance {asked} mm", "report",
+                ", ".join(f"{time_s:.1f} s" for time_s in times))]
