@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from planner import pipeline
+from planner import pipeline, portions
 from planner.cli import main
 from planner.cli.plan import _parser
 from planner.errors import ArmFileError, PlannerError, TargetOutOfReach, UsageError
@@ -77,14 +77,16 @@ def test_every_error_can_be_sent_from_process_to_process() -> None:
 
 def test_portions_are_cut_by_the_drawing_and_hold_every_stroke_once() -> None:
     strokes = [np.zeros((n, 2)) for n in (1500, 800, 1, 2500, 700, 3)]
-    portions = list(stroke_portions(Kit.of(load_once("drawing_arm"), PlanSettings()), strokes))
-    assert [len(stroke) for portion in portions for stroke in portion.strokes] == [1500, 800, 1, 2500, 700, 3]
-    assert [len(portion.strokes) for portion in portions] == [2, 2, 2]
+    cut = list(stroke_portions(Kit.of(load_once("drawing_arm"), PlanSettings()), strokes))
+    assert [len(stroke) for portion in cut for stroke in portion.strokes] == [1500, 800, 1, 2500, 700, 3]
+    assert [len(portion.strokes) for portion in cut] == [2, 2, 2]
 
 
 def test_the_same_bytes_whatever_the_number_of_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline, "_SMALL_BYTES", 0)
-    drawing = scribbles(tmp_path / "scribbles.svg", 22, 100)
+    monkeypatch.setattr(portions, "_PORTION_POINTS", 100)
+    monkeypatch.setattr(portions, "_PORTION_HOPS", 4)
+    drawing = scribbles(tmp_path / "scribbles.svg", 8, 60)
     written = []
     for count in (1, 2, 3):
         file = tmp_path / f"{count}.csv"
