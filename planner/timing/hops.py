@@ -18,21 +18,24 @@ from planner.arms.kinematics import Kinematics
 from planner.arms.projection import project
 from planner.arrays import BoolArray, FloatArray
 from planner.timing.leap_choice import (
+    RESTING_SHARE,
     Slopes,
     coordinate_limits,
+    fall_aim,
     rest_of,
-    shares_and_tops,
+    shares_and_aims,
     turning_acceleration,
 )
 from planner.timing.limits import Limits
 from planner.timing.quickest_lift import quickest_lifts
-from planner.timing.ruckig_profile import RestToRest, rest_to_rest
+from planner.timing.ruckig_profile import RestToRest, between_states, rest_to_rest
 
 _PROBES = 9
+_HEIGHT_PROBES = 33
 _FINE = 4
 """Samples per period at which limits are checked."""
-_FITS = 5
-"""How often a turning height is raised until the move over the paper fits above the clearance."""
+_ABOUT = (0.95, 1.0, 1.05, 1.1)
+"""Heights to aim at about the one that formulas find best, as they rank only."""
 _TURN_MARGIN = 0.999
 """Share of the braking that limits allow at a turn: at the very limit rounding decides whether Ruckig accepts."""
 
@@ -120,13 +123,15 @@ class _Shape:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Timed:
-    """A hop's motions: up, over, and down, which is a rise from the end of the hop played backwards; all slowed by one
-    factor."""
+    """A hop's motions: up, over, and down, which is a rise from the end of the hop played backwards; above the
+    clearance, where there is such a motion, from the state of the one to that of the other; all slowed by one factor.
+    """
 
     shape: _Shape
     up: RestToRest
     over: RestToRest
     down: RestToRest
+    above: RestToRest | None
     over_begins_s: float
     clear_until_s: float
     natural_s: float
@@ -136,15 +141,18 @@ class _Timed:
     def duration_s(self) -> float:
         return self.natural_s * self.factor
 
-    @property
-    def fits(self) -> bool:
-        """Whether the place is reached while the pen is still above the clearance, without a halt at the top."""
-        return self.over_begins_s + self.over.duration_s <= self.clear_until_s
+    def stays_between(self, rules: HopRules) -> bool:
+        """Whether the motion above the clearance never dips below it nor leaves the lift height."""
+        if self.above is None:
+            return True
+        heights = self.above.at(np.linspace(0.0, self.above.duration_s, _HEIGHT_PROBES))
+        return bool(heights.min() >= rules.clearance_mm - 1e-6 and heights.max() <= rules.lift_mm)
 
     def slowed(self, needed: float, rules: HopRules) -> _Timed:
         """Slowed by what is needed, or sped up by what is left but for the cap on lowering, and on to whole sample
         periods."""
-        lowering = self.down.highest_speed / rules.lowering_speed_mm_s
+        falls = (self.down.highest_speed, -self.above.lowest_velocity if self.above else 0.0)
+        lowering = max(falls) / rules.lowering_speed_mm_s
         duration = self.natural_s * max(needed, lowering)
         whole = max(np.ceil(duration * rules.rate_hz - 1e-9), 1.0) / rules.rate_hz
         return replace(self, factor=float(whole / self.natural_s))
@@ -154,6 +162,9 @@ class _Timed:
         times = times_s / self.factor
         height = np.where(times < self.up.duration_s, self.shape.from_mm + self.up.at(times),
                           self.shape.to_mm + self.down.at(self.natural_s - times))
+        if self.above:
+            clear = (times > self.over_begins_s) & (times < self.clear_until_s)
+            height[clear] = self.above.at(times[clear] - self.over_begins_s)
         return self.over.at(times - self.over_begins_s), height
 
     def hop(self, joints: FloatArray, exact: bool) -> Hop:
@@ -177,18 +188,17 @@ def _joint_slopes(kinematics: Kinematics, shapes: Sequence[_Shape]) -> Slopes:
 
 def _timed(shapes: Sequence[_Shape], slopes: Slopes, limits: Limits, rules: HopRules) -> list[_Timed]:
     """The motions of every hop, within the limits as far as joints follow their slopes."""
-    shares, tops = shares_and_tops(slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s)
+    shares, aims = shares_and_aims(slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s)
     over = _rows(coordinate_limits(slopes.along, rest_of(slopes, limits, shares)))
     up = _rows(coordinate_limits(slopes.lifting, limits))
     down = _rows(coordinate_limits(slopes.lowering, limits))
     plans = []
-    for shape, share, top, of_over, of_up, of_down in zip(shapes, shares.tolist(), tops.tolist(), over, up, down,
+    for shape, share, aim, of_over, of_up, of_down in zip(shapes, shares.tolist(), aims.tolist(), over, up, down,
                                                           strict=True):
         still = float(np.abs(shape.polar[1] - shape.polar[0]).max()) < 1e-9
         way = rest_to_rest(0.0 if still else 1.0, *of_over)
-        heights = _Heights((of_up[0], share * of_up[1], share * of_up[2]),
-                           (min(of_down[0], rules.lowering_speed_mm_s), share * of_down[1], share * of_down[2]))
-        plans.append(_leap(shape, way, heights, rules, top))
+        heights = _Heights(of_up, (min(of_down[0], rules.lowering_speed_mm_s), *of_down[1:]), share)
+        plans.append(_leap(shape, way, heights, rules, aim))
     return plans
 
 
@@ -198,46 +208,59 @@ _Bounds = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class _Heights:
+    """Bounds of the height near both ends, and the share of them that is left for it above the clearance."""
+
     up: _Bounds
     down: _Bounds
+    share: float
 
 
 def _rows(limits: Limits) -> list[_Bounds]:
     return list(zip(limits.velocity.tolist(), limits.acceleration.tolist(), limits.jerk.tolist(), strict=True))
 
 
-def _leap(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules, top_mm: float) -> _Timed:
-    """The leap that turns at the top, raised until the way fits above the clearance; where it does not even at the
-    lift height, or where an end is in the air, the leap that rests there."""
-    if not (shape.from_mm or shape.to_mm):
-        for _ in range(_FITS):
-            leap = _with_top(shape, over, heights, rules, top_mm, turns=True)
-            if leap.fits:
-                return leap
-            if top_mm >= rules.lift_mm:
-                break
-            stay_s = leap.clear_until_s - leap.over_begins_s
-            lack = over.duration_s / max(stay_s, 1e-6)
-            top_mm = min(rules.clearance_mm + (top_mm - rules.clearance_mm) * min(lack ** 2, 2.0) * 1.01, rules.lift_mm)
-    return _with_top(shape, over, heights, rules, rules.lift_mm, turns=False)
+def _leap(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules, aim_mm: float) -> _Timed:
+    """The leap that aims at about that height and turns without a halt; the one that rests at the lift height where an
+    end is in the air, or where the others are too high or too low."""
+    turning = []
+    if not (shape.from_mm or shape.to_mm) and np.isfinite(aim_mm):
+        turning = [_turning_leap(shape, over, heights, rules, aim_mm * about) for about in _ABOUT]
+    return min((leap for leap in turning if leap.stays_between(rules)), key=lambda leap: leap.natural_s,
+               default=_resting_leap(shape, over, heights, rules))
 
 
-def _with_top(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules, top_mm: float, *, turns: bool
-              ) -> _Timed:
-    """A leap of that height, the way beginning where the clearance is passed."""
-    rises = (top_mm - shape.from_mm, top_mm - shape.to_mm)
-    turning = 0.0
-    if turns:
-        turning = _TURN_MARGIN * min(
-            min(acceleration, float(turning_acceleration(np.array(rise), np.array(jerk), velocity)))
-            for rise, (velocity, acceleration, jerk) in zip(rises, (heights.up, heights.down), strict=True))
-    up, down = rest_to_rest(rises[0], *heights.up, turning), rest_to_rest(rises[1], *heights.down, turning)
-    clear = [motion.time_at(rules.clearance_mm) if top_mm > rules.clearance_mm > foot else motion.duration_s
-             for motion, foot in ((up, shape.from_mm), (down, shape.to_mm))]
-    natural = up.duration_s + down.duration_s
-    if not turns:
-        natural = max(natural, clear[0] + over.duration_s + clear[1])
-    return _Timed(shape, up, over, down, clear[0], natural - clear[1], natural)
+def _turning_leap(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules, aim_mm: float) -> _Timed:
+    """The leap whose rise aims at a height."""
+    up, down = _rise(aim_mm, heights.up), _rise(fall_aim(rules.clearance_mm), heights.down)
+    clear = [rise.time_at(rules.clearance_mm) for rise in (up, down)]
+    (up_speed, up_braking), (down_speed, down_braking) = (
+        rise.state_at(time) for rise, time in zip((up, down), clear, strict=True))
+    above = between_states(rules.clearance_mm, (up_speed, up_braking), (-down_speed, down_braking),
+                           -heights.down[0] / _TURN_MARGIN, _above(heights), over.duration_s)
+    until = clear[0] + above.duration_s
+    return _Timed(shape, up, over, down, above, clear[0], until, until + clear[1])
+
+
+def _above(heights: _Heights) -> _Bounds:
+    """Bounds of the height above the clearance: its share of the jerk, and any acceleration, which jerk keeps small."""
+    return (heights.up[0], min(heights.up[1], heights.down[1]), heights.share * min(heights.up[2], heights.down[2]))
+
+
+def _rise(top_mm: float, bounds: _Bounds) -> RestToRest:
+    """The rise from rest that turns at the top, braking as hard there as the bounds allow."""
+    velocity, acceleration, jerk = bounds
+    turning = float(turning_acceleration(np.array(top_mm), np.array(jerk), velocity))
+    return rest_to_rest(top_mm, *bounds, _TURN_MARGIN * min(turning, acceleration))
+
+
+def _resting_leap(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules) -> _Timed:
+    """The leap that is at rest at the lift height."""
+    up, down = (rest_to_rest(rules.lift_mm - foot, bounds[0], RESTING_SHARE * bounds[1], RESTING_SHARE * bounds[2])
+                for foot, bounds in ((shape.from_mm, heights.up), (shape.to_mm, heights.down)))
+    clear = [rise.time_at(rules.clearance_mm) if rules.lift_mm > rules.clearance_mm > foot else rise.duration_s
+             for rise, foot in ((up, shape.from_mm), (down, shape.to_mm))]
+    natural = max(up.duration_s + down.duration_s, clear[0] + over.duration_s + clear[1])
+    return _Timed(shape, up, over, down, None, clear[0], natural - clear[1], natural)
 
 
 def _sampled(kinematics: Kinematics, plans: Sequence[_Timed], rate_hz: float

@@ -37,6 +37,10 @@ class RestToRest:
     def highest_speed(self) -> float:
         return max(abs(velocity) for _, velocity, _, _ in self.states)
 
+    @property
+    def lowest_velocity(self) -> float:
+        return min(velocity for _, velocity, _, _ in self.states)
+
     def at(self, times_s: FloatArray) -> FloatArray:
         """(n,) positions at times (n,); before the start 0, after the end `distance`."""
         begins = np.array(self.begins_s)
@@ -47,6 +51,13 @@ class RestToRest:
         reached: FloatArray = position + into * (velocity + into * (acceleration / 2 + into * jerk / 6))
         reached[times_s >= begins[-1]] = self.distance
         return reached
+
+    def state_at(self, time_s: float) -> tuple[float, float]:
+        """Velocity and acceleration at a time between the start and the end."""
+        piece = max(bisect_right(self.begins_s[:-1], time_s) - 1, 0)
+        into = time_s - self.begins_s[piece]
+        _, velocity, acceleration, jerk = self.states[piece]
+        return velocity + into * (acceleration + into * jerk / 2), acceleration + into * jerk
 
     def time_at(self, position: float) -> float:
         """When the position is passed, for positions between 0 and `distance`, by bisection within its piece."""
@@ -77,7 +88,28 @@ def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: fl
     result = ruckig.Ruckig(1).calculate(request, trajectory)
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
         raise ArithmeticError(f"Ruckig: {result} over {distance:g} within {velocity:g}, {acceleration:g}, {jerk:g}")
+    return RestToRest(distance, *_pieces(trajectory))
+
+
+def between_states(position: float, start: tuple[float, float], end: tuple[float, float], lowest_velocity: float,
+                   limits: tuple[float, float, float], least_s: float) -> RestToRest:
+    """The fastest way back to the same `position`, from velocity and acceleration `start` to those at the `end`, that
+    takes `least_s` at least. Both ends must be within the limits, and stay so when braked from or led up to."""
+    velocity, acceleration, jerk = limits
+    request = ruckig.InputParameter(1)
+    request.current_position, request.target_position = [position], [position]
+    request.current_velocity, request.target_velocity = [start[0]], [end[0]]
+    request.current_acceleration, request.target_acceleration = [start[1]], [end[1]]
+    request.min_velocity, request.max_velocity = [lowest_velocity], [velocity]
+    request.max_acceleration, request.max_jerk = [acceleration], [jerk]
+    request.minimum_duration = least_s
+    trajectory = ruckig.Trajectory(1)
+    ruckig.Ruckig(1).calculate(request, trajectory)
+    return RestToRest(position, *_pieces(trajectory))
+
+
+def _pieces(trajectory: ruckig.Trajectory
+            ) -> tuple[tuple[float, ...], tuple[tuple[float, float, float, float], ...]]:
     profile = trajectory.profiles[0][0]
     begins_s = (0.0, *accumulate(profile.t))
-    return RestToRest(distance, begins_s,
-                      tuple(zip(profile.p, profile.v, profile.a, (*profile.j, 0.0), strict=True)))
+    return begins_s, tuple(zip(profile.p, profile.v, profile.a, (*profile.j, 0.0), strict=True))
