@@ -25,22 +25,25 @@ _ROUNDS = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Metric:
-    """The cost of travelling between two points: the p-norm (2 or inf) between their images under `embed`.
+    """The cost of travelling between two points: the p-norm (2 or inf) between their images under `embed`, raised to
+    an exponent.
 
-    embed: points (n, 2) to vectors (n, k).
+    embed: points (n, 2) to vectors (n, k). exponent: 1 for lengths; 1/3 for the times of jerk-limited moves, among
+    which one long move is sooner done than several short ones.
     """
 
     embed: Embedding
     p: float = 2.0
+    exponent: float = 1.0
 
     def distance(self, one: FloatArray, other: FloatArray) -> FloatArray:
-        """Norms (n,) of differences of embedded points (n, k)."""
+        """Costs (n,) of the differences of embedded points (n, k)."""
         difference = np.abs(one - other)
         if np.isinf(self.p):
-            largest: FloatArray = difference.max(axis=-1)
-            return largest
-        norm: FloatArray = np.sqrt(np.sum(difference * difference, axis=-1))
-        return norm
+            norm: FloatArray = difference.max(axis=-1)
+        else:
+            norm = np.sqrt(np.sum(difference * difference, axis=-1))
+        return norm if self.exponent == 1.0 else norm ** self.exponent
 
 
 def _unchanged(points: FloatArray) -> FloatArray:

@@ -18,7 +18,8 @@ from planner.drawing.order import Metric, order_strokes, travel
 ORIGIN = np.zeros(2)
 grid = st.tuples(st.integers(0, 6), st.integers(0, 6))
 METRICS = [Metric(lambda points: points),
-           Metric(lambda points: np.column_stack([points[:, 0], 3.0 * points[:, 1], points.sum(axis=1)]), p=np.inf)]
+           Metric(lambda points: np.column_stack([points[:, 0], 3.0 * points[:, 1], points.sum(axis=1)]), p=np.inf),
+           Metric(lambda points: points, exponent=1 / 3)]
 
 
 def without_repeats(points: list[tuple[int, int]]) -> FloatArray:
@@ -85,7 +86,7 @@ def test_thousands_of_ends_in_one_place() -> None:
     assert len(join_strokes(star, 1e-6)) == 2000
 
 
-@pytest.mark.parametrize("metric", METRICS, ids=["page", "chebyshev"])
+@pytest.mark.parametrize("metric", METRICS, ids=["page", "chebyshev", "cube root"])
 @given(strokes=many_strokes)
 def test_ordering_keeps_every_segment_and_never_lengthens_the_way(metric: Metric, strokes: list[FloatArray]) -> None:
     ordered = order_strokes(strokes, ORIGIN, metric)
