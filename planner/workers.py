@@ -7,6 +7,7 @@ workers. The doorway to joblib.
 from __future__ import annotations
 
 import importlib.util
+import multiprocessing.resource_tracker
 import os
 import signal
 import threading
@@ -69,10 +70,10 @@ def crew_of(workers: Workers) -> Iterator[Crew]:
         else:
             client = until_done.enter_context(_cluster(workers.cluster))
             until_done.enter_context(parallel_config("dask", n_jobs=-1, client=client))
-        parallel = until_done.enter_context(Parallel(return_as="generator", batch_size=1, pre_dispatch="3*n_jobs"))
+        parallel = until_done.enter_context(Parallel(return_as="generator", batch_size=1, pre_dispatch="2*n_jobs"))
 
         def crew(work: Callable[[Portion], Result], portions: Iterable[Portion]) -> Iterator[Result]:
-            with _interrupts_ignored():  # as the processes will that start now
+            with _interrupts_held():
                 results: Generator[Result, None, None] = parallel(delayed(work)(portion) for portion in portions)
             until_done.callback(results.close)
             return results
@@ -85,17 +86,21 @@ def _in_turn(work: Callable[[Portion], Result], portions: Iterable[Portion]) -> 
 
 
 @contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Processes started in here never know Ctrl-C: one that it meets half-way through its start would leave its
-    parent waiting."""
-    if threading.current_thread() is not threading.main_thread():
+def _interrupts_held() -> Iterator[None]:
+    """Ctrl-C waits until this is over, and processes and threads started in here never see it: one that it met
+    half-way through its start would leave its parent waiting."""
+    if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    from joblib.externals.loky.backend import resource_tracker
+
+    resource_tracker.ensure_running()  # the start of either would let interrupts through again
+    multiprocessing.resource_tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _settle_in(parent: int) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from planner.cli.interrupts import interrupts_remembered
 from planner.cli.parser import Parser
 from planner.cli.plan import add_plan_options, settings_of
 from planner.cli.terminal import print_lines, print_note, print_warnings, progress
@@ -38,9 +39,10 @@ def batch(arguments: list[str]) -> int:
 
     jobs = jobs_of(folder, options.output or folder, settings)
     outcomes: list[Outcome] = []
-    with progress(quiet=options.quiet) as show:
+    with progress(quiet=options.quiet) as show, interrupts_remembered() as raise_if_interrupted:
         show("drawings", 0, len(jobs))
         for outcome in plan_all(jobs, options.workers):
+            raise_if_interrupted()
             outcomes.append(outcome)
             show("drawings", len(outcomes), len(jobs))
     for outcome in outcomes:

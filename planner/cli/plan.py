@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from planner.cli.interrupts import interrupts_remembered
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import (
@@ -55,8 +56,13 @@ def plan(arguments: list[str]) -> int:
     from planner.pipeline import plan as plan_drawing
     from planner.trajectory import write_trajectory
 
-    with progress(quiet=options.quiet) as show:
-        planned = plan_drawing(drawing, settings, show, options.workers)
+    with progress(quiet=options.quiet) as show, interrupts_remembered() as raise_if_interrupted:
+        def report(stage: str, done: int, total: int) -> None:
+            raise_if_interrupted()
+            show(stage, done, total)
+
+        planned = plan_drawing(drawing, settings, report, options.workers)
+        raise_if_interrupted()
         write_trajectory(planned.trajectory, target)
     print_warnings(planned.summary.warnings)
     if not options.quiet:
