@@ -101,7 +101,8 @@ def _placed(drawing: Drawing, arm: Arm, settings: PlanSettings, lift_mm: float
     canvas = canvas_of(arm, settings.canvas, lift_mm)
     turned = compose(rotation(settings.rotate_deg), drawing.user_to_page)
     low, high = extent(drawing.outlines, turned)
-    onto_arm = fit_to_canvas(low, high, canvas, margin_mm=settings.margin_mm, scale=settings.fit)
+    onto_arm = fit_to_canvas(low, high, canvas, margin_mm=settings.margin_mm, scale=settings.fit,
+                             may_exceed=settings.skip_unreachable)
     scale = float(np.hypot(*onto_arm[:, 0]))
     width, height = scale * (high - low)
     return compose(onto_arm, turned), scale, (float(width), float(height))

@@ -30,7 +30,7 @@ SMOOTH_SHARE, SAMPLE_SHARE = 0.5, 0.4
 
 _PORTION_POINTS = 2000
 _PORTION_HOPS = 125
-_TIMING_HALVINGS = 2
+_TIMING_HALVINGS = 1
 """How often the cells of a path are cut in two before it is timed: jerk switches at cell ends only, and cells as
 long as the corners that they go round are too coarse for that."""
 _TAP_S = 0.05
@@ -108,7 +108,7 @@ def hop_portions(kit: Kit, rules: HopRules, leave: Sequence[Touch | None], meet:
 
 def make_ready(kit: Kit) -> None:
     """Build what the first portion would have to wait for."""
-    posture_field(kit.arm)
+    posture_field(kit.arm, kit.settings.weights)
 
 
 def timed_strokes(portion: StrokePortion) -> list[TimedStroke | Obstacle]:
@@ -133,7 +133,7 @@ def planned_hops(portion: HopPortion) -> list[Hop]:
 
 def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedStroke | Obstacle]:
     paths = smooth_paths(strokes, SMOOTH_SHARE * settings.tolerance_mm)
-    splines, obstacles = joint_paths(arm, settings.method, paths)
+    splines, obstacles = joint_paths(arm, settings.method, paths, settings.weights)
     if obstacles and not settings.skip_unreachable:
         blocked = {obstacle.path: obstacle for obstacle in obstacles}
         return [blocked.get(index, obstacles[0]) for index in range(len(strokes))]
@@ -161,7 +161,7 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
 
 def _timed_taps(arm: Arm, tips_mm: FloatArray, settings: PlanSettings) -> list[TimedStroke | Obstacle]:
     tips = np.column_stack((tips_mm, np.zeros(len(tips_mm))))
-    free, obstacles = exact_postures(arm, postures_at(arm, settings.method, tips), tips)
+    free, obstacles = exact_postures(arm, postures_at(arm, settings.method, tips, settings.weights), tips)
     blocked = {obstacle.path: obstacle for obstacle in obstacles}
     joints = arm.complete(free)
     rest = max(round(max(settings.dwell_s, _TAP_S) * settings.rate_hz), 1)

@@ -58,3 +58,4 @@ class PlanSettings:
     margin_mm: float = 5.0
     rotate_deg: float = 0.0
     skip_unreachable: bool = False
+    weights: PostureWeights = PostureWeights()

@@ -23,8 +23,9 @@ from planner.inverse_kinematics import dls, nlp
 from planner.inverse_kinematics.joint_path import JointPaths, interpolate
 from planner.placement.pen_path import PenPaths
 from planner.ragged import starts_of
-from planner.settings import Method
+from planner.settings import Method, PostureWeights
 
+_WEIGHTS = PostureWeights()
 _TARGET_SPACING_MM = 1.0
 """Distance between the targets that sequential methods solve for; splines carry their postures between."""
 _CHECKED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
@@ -44,10 +45,10 @@ class Obstacle:
     limit: str | None
 
 
-def postures_at(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
+def postures_at(arm: Arm, method: Method, tips_mm: FloatArray, weights: PostureWeights = _WEIGHTS) -> FloatArray:
     """(n, n_free) reference postures for single tips (n, 3), each by itself."""
     if method is Method.PATH:
-        return posture_field(arm).reference(tips_mm)
+        return posture_field(arm, weights).reference(tips_mm)
     if method is Method.CLOSED_FORM:
         return closed_form_postures(arm)(arm, tips_mm)
     if len(tips_mm) == 0:
@@ -64,7 +65,8 @@ def exact_postures(arm: Arm, references: FloatArray, tips_mm: FloatArray) -> tup
                   for index in np.flatnonzero(~exact | outside).tolist()]
 
 
-def joint_paths(arm: Arm, method: Method, paths: PenPaths) -> tuple[JointPaths, list[Obstacle]]:
+def joint_paths(arm: Arm, method: Method, paths: PenPaths, weights: PostureWeights = _WEIGHTS
+                ) -> tuple[JointPaths, list[Obstacle]]:
     """Joint splines along pen paths on the paper, and the paths that cannot be followed, each with where."""
     starts = starts_of(paths.n_cells)
     corners = paths.points(np.array([0.0, 1.0]))
@@ -76,7 +78,7 @@ def joint_paths(arm: Arm, method: Method, paths: PenPaths) -> tuple[JointPaths, 
             _sequential_references(arm, method, tips[first:last])
             for first, last in pairwise(per_path)])
     else:
-        references = postures_at(arm, method, tips)
+        references = postures_at(arm, method, tips, weights)
     free, exact = project(kinematics_of(arm), np.nan_to_num(references), tips)
     splines = interpolate(paths.n_cells, arm.complete(free))
     middles = kinematics_of(arm).tip_mm(kinematics_of(arm).free_of(splines.positions(_MIDDLE)[:, 0]))
