@@ -14,11 +14,12 @@ from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arms.canvas import canvas_of
 from planner.arms.posture_field import posture_field
+from planner.arms.travel_embedding import travel_embedding
 from planner.arrays import BoolArray, FloatArray
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import extent, flatten_all
 from planner.drawing.join import join_strokes
-from planner.drawing.order import order_strokes
+from planner.drawing.order import Metric, order_strokes
 from planner.drawing.svg import read_drawing
 from planner.errors import PlanError, TargetOutOfReach, UsageError
 from planner.inverse_kinematics.stroke_postures import Obstacle
@@ -75,7 +76,7 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
         strokes, warnings = _strokes(drawing, svg_to_arm, arm, settings)
         report("ordering strokes", 0, 1)
         canvas = canvas_of(arm, settings.canvas, arm.pen.lift_mm)
-        strokes = order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)))
+        strokes = order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
         for _ in getting_ready:
             pass
         timed, lost = _timed_strokes(crew, kit, strokes, report)

@@ -21,7 +21,7 @@ from planner.cli import EXIT_DEFECT, main
 from planner.cli.plan import _parser, settings_of
 from planner.cli.terminal import progress
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach
-from planner.settings import CanvasKind, Method, PlanSettings
+from planner.settings import CanvasKind, Method, PlanSettings, PostureWeights
 from planner.trajectory import Trajectory, read_trajectory, write_trajectory
 from planner.workers import Workers
 
@@ -126,16 +126,25 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
     assert main([
         str(drawing), "--arm", "drawing_arm_2022", "--method", "closed-form", "--rate", "50", "--tolerance", "0.01cm",
         "--speed", "4cm/s", "--lowering-speed", "20", "--dwell", "0.25", "--lift", "96px", "--canvas", "optimal",
-        "--no-fit", "--margin", "0.5in", "--rotate", "-90", "--skip-unreachable"]) == 0
+        "--no-fit", "--margin", "0.5in", "--rotate", "-90", "--skip-unreachable",
+        "--weights", "time=3,reversals=0"]) == 0
     wanted = PlanSettings(
         arm="drawing_arm_2022", method=Method.CLOSED_FORM, rate_hz=50, tolerance_mm=0.1, speed_mm_s=40,
         lowering_speed_mm_s=20, dwell_s=0.25, lift_mm=25.4, canvas=CanvasKind.OPTIMAL, fit=False, margin_mm=12.7,
-        rotate_deg=-90, skip_unreachable=True)
+        rotate_deg=-90, skip_unreachable=True, weights=PostureWeights(time=3, reversals=0))
     [(_, settings)] = asked
     default = PlanSettings()
     for one in fields(PlanSettings):
         assert getattr(wanted, one.name) != getattr(default, one.name), f"{one.name} is not varied here"
-        assert getattr(settings, one.name) == pytest.approx(getattr(wanted, one.name)), one.name
+        value = getattr(wanted, one.name)
+        assert getattr(settings, one.name) == (value if isinstance(value, PostureWeights) else pytest.approx(value))
+
+
+@pytest.mark.parametrize("text", [
+    "time", "speed=1", "time=-1", "time=nan", "time=0,sensitivity=0,reversals=0,limits=0"])
+def test_weights_that_mean_nothing_are_refused(drawing: Path, text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([str(drawing), "--weights", text]) == 2
+    assert "--weights" in capsys.readouterr().err
 
 
 def test_the_defaults_are_those_of_the_settings() -> None:

@@ -52,8 +52,9 @@ class PostureCost:
         symbols = casadi.SX.sym("q", arm.n_joints)
         _, _, jacobian = self.kinematics.symbolic_jacobian(symbols)
         sideways = casadi.substitute(jacobian[:2, :], symbols, joints) @ casadi.diag(arm.per_file_unit / np.radians(1))
-        return (self.weights.sensitivity * _SENSITIVITY * casadi.sumsqr(sideways) / self.reach_mm ** 2
-                + self.weights.limits * _LIMITS * casadi.sumsqr(spread) / arm.n_joints)
+        cost: casadi.SX = (self.weights.sensitivity * _SENSITIVITY * casadi.sumsqr(sideways) / self.reach_mm ** 2
+                           + self.weights.limits * _LIMITS * casadi.sumsqr(spread) / arm.n_joints)
+        return cost
 
     @cached_property
     def _posture(self) -> CompiledFunction:

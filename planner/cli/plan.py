@@ -15,6 +15,7 @@ from planner.cli.quantities import (
     angle_deg,
     length_mm,
     number,
+    posture_weights,
     speed_mm_s,
 )
 from planner.cli.terminal import print_lines, print_warnings, progress
@@ -37,6 +38,7 @@ examples:
   plan flower.svg -o traj.csv --arm my_arm.toml    for an arm of your own
   plan flower.svg --speed 4cm/s --margin 0.5in --rotate 90
   plan city.svg --workers 4                        with four processes; the result does not depend on them
+  plan flower.svg --weights time=3,reversals=0     postures for speed rather than for servos with backlash
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
 
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
@@ -76,7 +78,7 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
         arm=options.arm, method=Method(options.method), rate_hz=options.rate, tolerance_mm=options.tolerance,
         speed_mm_s=options.speed, lowering_speed_mm_s=options.lowering_speed, dwell_s=options.dwell,
         lift_mm=options.lift, canvas=CanvasKind(options.canvas), fit=options.fit, margin_mm=options.margin,
-        rotate_deg=options.rotate, skip_unreachable=options.skip_unreachable)
+        rotate_deg=options.rotate, skip_unreachable=options.skip_unreachable, weights=options.weights)
 
 
 def _parser() -> Parser:
@@ -100,6 +102,9 @@ def add_plan_options(parser: Parser) -> None:
     motion = parser.add_argument_group("motion")
     motion.add_argument("--method", choices=[method.value for method in Method], default=default.method.value,
                         help="how postures are found (default: %(default)s)")
+    motion.add_argument("--weights", type=posture_weights, default=default.weights, metavar="NAME=W,...",
+                        help="what method path spends spare joints on: time, sensitivity (of the tip to joint errors),"
+                             " reversals (of joints), limits (distance from them); those not named weigh 1")
     motion.add_argument("--rate", type=number(minimum=MIN_RATE_HZ, maximum=MAX_RATE_HZ), default=default.rate_hz,
                         metavar="HZ", help="samples a second (default: %(default)g)")
     motion.add_argument("--tolerance", type=length_mm(minimum_mm=MIN_TOLERANCE_MM), default=default.tolerance_mm,

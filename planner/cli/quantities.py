@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import math
 import re
 from collections.abc import Callable
+
+from planner.settings import PostureWeights
 
 MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4, "px": 25.4 / 96}
 """Suffixes of lengths; a plain number is in millimetres, and a pixel is CSS's 1/96 inch."""
@@ -34,6 +37,21 @@ def number(*, zero: bool = False, minimum: float = 0.0, maximum: float = math.in
     def read(text: str) -> float:
         return _in_range(_finite(text, text), text, zero=zero, minimum=minimum, maximum=maximum)
     return read
+
+
+def posture_weights(text: str) -> PostureWeights:
+    """Weights such as `time=2,reversals=0.5`; those that are not named stay 1."""
+    names = [field.name for field in dataclasses.fields(PostureWeights)]
+    weights: dict[str, float] = {}
+    for part in text.split(","):
+        name, separator, value = part.partition("=")
+        if not separator or name.strip() not in names:
+            raise argparse.ArgumentTypeError(f"'{part}' is not NAME=NUMBER with a name out of {', '.join(names)}")
+        weights[name.strip()] = _in_range(_finite(value, text), text, zero=True)
+    chosen = PostureWeights(**weights)
+    if not any(getattr(chosen, name) for name in names):
+        raise argparse.ArgumentTypeError("the weights are all zero; at least one has to be positive")
+    return chosen
 
 
 def angle_deg(text: str) -> float:

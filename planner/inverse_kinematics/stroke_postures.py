@@ -26,6 +26,9 @@ from planner.ragged import starts_of
 from planner.settings import Method, PostureWeights
 
 _WEIGHTS = PostureWeights()
+_HOME = PostureWeights(time=0.1, sensitivity=0.0, reversals=0.0, limits=1.0)
+"""Sequential methods start from a home that is well inside the joint limits."""
+
 _TARGET_SPACING_MM = 1.0
 """Distance between the targets that sequential methods solve for; splines carry their postures between."""
 _CHECKED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
@@ -89,7 +92,7 @@ def joint_paths(arm: Arm, method: Method, paths: PenPaths, weights: PostureWeigh
 
 def _sequence(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
     """Postures of targets solved one after the other, the first from the arm's home."""
-    home = posture_field(arm).home
+    home = posture_field(arm, _HOME).home
     if method is Method.DLS:
         return dls.solve_sequence(arm, tips_mm, arm.complete(home), dls.FOR_DRAWING).postures
     return nlp.solve_sequence(arm, tips_mm, home).postures
