@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import pickle
 import signal
@@ -9,12 +10,14 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from planner import pipeline, portions
+from planner.arms.arm_file import load_arm
 from planner.cli import main
 from planner.cli.plan import _parser
 from planner.errors import ArmFileError, PlannerError, TargetOutOfReach, UsageError
@@ -45,28 +48,22 @@ def unheard(stage: str, done: int, total: int) -> None:
     """Progress that nobody looks at."""
 
 
-def _double(number: int) -> int:
-    return 2 * number
-
-
-def _fault(number: int) -> int:
-    if number == 3:
-        raise ArmFileError("arm.toml", ["first", "second"])
-    return number
-
-
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_results_come_in_the_order_of_their_portions(count: int) -> None:
     with crew_of(Workers(count)) as crew:
         for _ in range(2):
-            assert list(crew(_double, range(50))) == list(range(0, 100, 2))
+            assert list(crew(partial(operator.mul, 2), range(50))) == list(range(0, 100, 2))
 
 
 @pytest.mark.parametrize("count", [1, 2])
-def test_errors_of_workers_keep_their_data(count: int) -> None:
+def test_errors_of_workers_keep_their_data(tmp_path: Path, count: int) -> None:
+    broken = tmp_path / "broken.toml"
+    broken.write_text('name = "broken"\n', encoding="utf-8")
     with crew_of(Workers(count)) as crew, pytest.raises(ArmFileError) as caught:
-        list(crew(_fault, range(6)))
-    assert caught.value.faults == ("first", "second") and str(caught.value) == "arm.toml: first; second"
+        list(crew(load_arm, ["drawing_arm", "scara", str(broken), "six_joint"]))
+    with pytest.raises(ArmFileError) as told:
+        load_arm(str(broken))
+    assert caught.value.faults == told.value.faults and len(told.value.faults) > 1
 
 
 def test_every_error_can_be_sent_from_process_to_process() -> None:
