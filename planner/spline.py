@@ -89,3 +89,21 @@ def halved(controls: FloatArray, n_cells: IntArray, degree: int) -> FloatArray:
         weight = np.where(used, np.take(mask, np.clip(weight_index, 0, degree + 1)), 0.0)
         cut += weight[:, None] * controls[first + np.clip(old, 0, last)]
     return cut
+
+
+def interpolating(values: FloatArray, degree: int = 5) -> FloatArray:
+    """(n + degree, d) control points of the one curve of n cells through values (n + 1, d) at its knots whose highest
+    derivative does not change at the knots next to the ends ("not a knot"; de Boor, chapter XIII). degree: odd."""
+    n_cells = len(values) - 1
+    count = n_cells + degree
+    rows = np.zeros((count, count))
+    right = np.zeros((count, values.shape[1]))
+    at_knot = weights(degree, np.zeros(1))[0, :degree]
+    for knot in range(n_cells + 1):
+        rows[knot, knot:knot + degree] = at_knot
+    right[:n_cells + 1] = values
+    change = np.array([(-1) ** k * comb(degree + 1, k) for k in range(degree + 2)])
+    half = (degree - 1) // 2
+    for k, first in enumerate((*range(half), *range(count - degree - 1 - half, count - degree - 1))):
+        rows[n_cells + 1 + k, first:first + degree + 2] = change
+    return np.asarray(np.linalg.solve(rows, right), dtype=np.float64)

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.interpolate import BSpline
+from scipy.interpolate import BSpline, make_interp_spline
 
 from planner.arrays import FloatArray
 from planner.ragged import starts_of, within
-from planner.spline import cell_polynomials, evaluate, evaluate_at, first_controls, weights
+from planner.spline import cell_polynomials, evaluate, evaluate_at, first_controls, interpolating, weights
 
 DEGREES = pytest.mark.parametrize("degree", [1, 2, 3, 5])
 FRACTIONS = np.linspace(0, 1, 11)
@@ -103,3 +103,12 @@ def test_one_fraction_a_cell_is_the_diagonal_of_all_fractions() -> None:
     table = evaluate(controls, cells, FRACTIONS, 5, 2)
     single = evaluate_at(controls, cells, FRACTIONS, 5, 2)
     np.testing.assert_allclose(single, table[np.arange(11), np.arange(11)], atol=1e-12)
+
+
+def test_interpolating_spline_is_the_not_a_knot_one() -> None:
+    values = np.random.default_rng(3).normal(size=(12, 2))
+    controls = interpolating(values)
+    known = make_interp_spline(np.arange(12), values, k=5)
+    sigma = np.linspace(0, 11, 200)
+    cell = np.minimum(sigma.astype(np.int64), 10)
+    np.testing.assert_allclose(evaluate_at(controls, cell, sigma - cell, 5), known(sigma), atol=1e-9)

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from scipy.interpolate import BSpline, make_interp_spline
 
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.kinematics import Kinematics, kinematics_of
@@ -24,10 +23,12 @@ from planner.arms.projection import project
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import ArmFileError, PlanError
 from planner.settings import PostureWeights
+from planner.spline import evaluate_at, interpolating
 
 _WEIGHTS = PostureWeights()
 _UPRIGHT_PROBES = 16
 _NODES = 49
+_DEGREE = 5
 _EDGE_MM = 1.0
 """The field is laid out over sqrt(outer + this - rho): near the stretched arm postures go with that root."""
 
@@ -36,7 +37,8 @@ _EDGE_MM = 1.0
 class PostureField:
     """Postures along the ray of azimuth zero, pen on the paper.
 
-    radii_mm: (n,) increasing; postures: (n, n_free) of the free joints, rad or mm.
+    radii_mm: (n,) increasing, laid out evenly over the square root of the distance from just beyond the last;
+    postures: (n, n_free) of the free joints, rad or mm.
     """
 
     arm: Arm
@@ -50,20 +52,24 @@ class PostureField:
         return posture
 
     @cached_property
-    def _spline(self) -> BSpline:
-        return make_interp_spline(self._coordinate(self.radii_mm)[::-1], self.postures[::-1], k=5)
+    def _controls(self) -> FloatArray:
+        return interpolating(self.postures, _DEGREE)
 
-    def _coordinate(self, radius_mm: FloatArray) -> FloatArray:
+    def _sigma(self, radius_mm: FloatArray) -> FloatArray:
+        """(n,) where radii lie among the field's own, counted in nodes."""
         edge = float(self.radii_mm[-1]) + _EDGE_MM
         inside = np.clip(radius_mm, self.radii_mm[0] - 0.5 * _EDGE_MM, self.radii_mm[-1] + 0.5 * _EDGE_MM)
-        coordinate: FloatArray = np.sqrt(edge - inside)
-        return coordinate
+        first, last = np.sqrt(edge - self.radii_mm[[0, -1]])
+        sigma: FloatArray = (first - np.sqrt(edge - inside)) / (first - last) * (len(self.radii_mm) - 1)
+        return sigma
 
     def reference(self, tip_mm: FloatArray) -> FloatArray:
         """(n, n_free) field postures at tips (n, 3), whatever their height; outside the field's radii,
         those of its edge."""
         radius = np.hypot(tip_mm[:, 0], tip_mm[:, 1])
-        reference: FloatArray = np.ascontiguousarray(self._spline(self._coordinate(radius)))
+        sigma = self._sigma(radius)
+        cell = np.clip(sigma.astype(np.int64), 0, len(self.radii_mm) - 2)
+        reference = evaluate_at(self._controls, cell, sigma - cell, _DEGREE)
         reference[:, 0] += np.arctan2(tip_mm[:, 1], tip_mm[:, 0])
         return reference
 
@@ -82,10 +88,14 @@ def within_limits(arm: Arm, free: FloatArray, slack: float = 1e-9, first_joint: 
     return kept
 
 
-@lru_cache(maxsize=16)
 def posture_field(arm: Arm, weights: PostureWeights = _WEIGHTS) -> PostureField:
-    """The field of an arm. Errors: PlanError where the arm cannot have one, ArmFileError where its file contradicts
-    itself."""
+    """The field of an arm, computed once. Errors: PlanError where the arm cannot have one, ArmFileError where its file
+    contradicts itself."""
+    return _computed(arm, weights)
+
+
+@lru_cache(maxsize=16)
+def _computed(arm: Arm, weights: PostureWeights) -> PostureField:
     first = arm.joints[0]
     if first.kind is not JointKind.REVOLUTE or 0 not in arm.free_joints:
         raise PlanError(f"arm {arm.name}: method 'path' needs a first joint that turns about the vertical axis")

@@ -102,7 +102,7 @@ def stretched_to_edges(kinematics: Kinematics, radii: FloatArray, postures: Floa
     """The course with its two ends moved out to where postures stop being usable."""
 
     def furthest(radius: float, posture: FloatArray, step: float, bound: float) -> tuple[float, FloatArray]:
-        while abs(step) > 0.01:
+        while abs(step) > 0.05:
             further = min(max(radius + step, bound), np.inf) if step < 0 else radius + step
             if further == radius:
                 break

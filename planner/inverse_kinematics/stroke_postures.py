@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from planner.arms.arm import Arm
 from planner.arms.closed_forms import closed_form_postures
@@ -100,6 +99,8 @@ def _sequence(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
 
 def _sequential_references(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
     """(n_knots, n_free): targets about a millimetre apart are solved in turn and joined by a spline."""
+    from scipy.interpolate import make_interp_spline  # heavy, and only these methods need it
+
     travelled = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(tips_mm, axis=0), axis=1))))
     count = max(int(np.ceil(travelled[-1] / _TARGET_SPACING_MM)), 1) + 1
     wanted = np.searchsorted(travelled, np.linspace(0.0, travelled[-1], count))
