@@ -75,7 +75,7 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
         svg_to_arm, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
         strokes, warnings = _strokes(drawing, svg_to_arm, arm, settings)
         report("ordering strokes", 0, 1)
-        canvas = canvas_of(arm, settings.canvas, arm.pen.lift_mm)
+        canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
         strokes = order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
         for _ in getting_ready:
             pass

@@ -30,7 +30,9 @@ def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *
     Depends on target and reference alone, and smoothly, so smooth input gives a smooth joint path.
     """
     target = kinematics.task_target(tip_mm)
-    squared_scale = joint_scale(kinematics) ** 2
+    scale = joint_scale(kinematics)
+    squared_scale = scale ** 2
+    allowed = 0.5 * np.pi / scale.max()
     solution = reference.copy()
     best = np.full(len(reference), np.inf)
     moved = np.full(len(reference), np.inf)
@@ -51,8 +53,7 @@ def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *
         multiplier = np.linalg.solve(gram, wanted[:, :, None])
         change = np.einsum("nij,ni->nj", weighted, multiplier[:, :, 0]) - offset
         # A step of more than a quarter turn says that the linearisation is meaningless there.
-        longest = np.abs(change / joint_scale(kinematics)).max(axis=1)
-        allowed = 0.5 * np.pi / joint_scale(kinematics).max()
+        longest = np.abs(change / scale).max(axis=1)
         change *= np.minimum(1.0, allowed / np.maximum(longest, 1e-300))[:, None]
         moved[active] = np.abs(change).max(axis=1)
         solution[active] += change
