@@ -1,9 +1,9 @@
 """From polylines to smooth pen paths: C4 curves within a tolerance that start and end fit for rest.
 
-Each path is a uniform quintic B-spline in sigma whose control points are taken from the polyline (the
-variation-diminishing approximation of Schoenberg, 1967). It rounds every corner by an amount that is
-proportional to the local spacing of control points, so the spacing is made fine where the polyline turns and
-coarse where it is straight.
+Each path is a uniform quintic B-spline in sigma whose control points are points of the polyline, sharpened: moved away
+from the mean of their neighbours (as in a quasi-interpolant; de Boor, A Practical Guide to Splines, chapter XII). The
+curve passes corners inside and, a little before and behind them, outside; what it strays is proportional to the local
+spacing of control points, so the spacing is made fine where the polyline turns and coarse where it is straight.
 Near both ends the arc length grows with sigma cubed, as it grows with time cubed when a constant jerk
 starts a motion: sigma then moves at a finite rate even where the pen is at rest.
 """
@@ -26,10 +26,16 @@ _GRADING = 0.6
 _RAMP_CELLS = 6
 """Cells over which sigma changes from cubic to proportional to arc length, at each end."""
 _FEWEST_CELLS = 16
-_ROUNDS = 14
-_CORNER_GAIN = 0.5694
-"""A lone corner of turning angle t is cut by 0.5694 sin(t / 2) of the spacing: half the mean absolute
-deviation of the quintic B-spline kernel times |u1 - u0| = 2 sin(t / 2)."""
+_SHARPENING = 0.3
+"""Share of the second difference that control points are moved by. 1/4 would reproduce cubics; a little more balances
+what corners are cut with what is overshot beside them, and lets the pen pass them quicker than either side alone."""
+_CORNER_GAIN = 0.25
+"""A lone corner of turning angle t strays by 0.21 sin(t / 2) of the spacing where a control point lies on it, by 0.36
+at worst: the spacing to begin with is for a corner between the two."""
+_GENTLE, _FIRM = (0.93, 0.95), (0.8, 0.85)
+"""Share of the tolerance that a refined spacing aims at, and the largest factor that it takes: first little by little,
+as every corner that is finer than it need be costs speed, then so that rounds come to an end."""
+_GENTLE_ROUNDS, _ROUNDS = 5, 30
 _SAMPLED = np.array([0.0, 0.25, 0.5, 0.75])
 """Fractions of every cell at which a path is compared with its polyline."""
 _GAP_MM = 1e4
@@ -64,7 +70,7 @@ def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPat
     """
     line = _Polylines.of(polylines)
     anchors_mm, spacings_mm = line.corner_spacings(tolerance_mm)
-    for _ in range(_ROUNDS):
+    for count in range(_ROUNDS):
         spacing = _Spacing.of(line, anchors_mm, spacings_mm)
         paths, arcs_mm = _sampled(line, spacing)
         cut_mm, at_mm, used_mm = _deviation(line, paths, arcs_mm, spacing)
@@ -72,7 +78,8 @@ def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPat
         if not worst.any():
             break
         # A lone corner is cut in proportion to the spacing, a bend in proportion to its square.
-        finer = used_mm[worst] * np.clip(0.85 * tolerance_mm / cut_mm[worst], 0.25, 0.9)
+        share, most = _GENTLE if count < _GENTLE_ROUNDS else _FIRM
+        finer = used_mm[worst] * np.clip(share * tolerance_mm / cut_mm[worst], 0.25, most)
         anchors_mm = np.concatenate((anchors_mm, at_mm[worst]))
         spacings_mm = np.concatenate((spacings_mm, finer))
     return paths
@@ -187,10 +194,8 @@ def _sampled(line: _Polylines, spacing: _Spacing) -> tuple[PenPaths, FloatArray]
         cells = spacing.begin[per_control] + stretch[per_control] * _ramped(sigma, n_cells[per_control])
         return spacing.arc_mm(cells)
 
-    middle = arc_at(sigma)
-    bend = arc_at(sigma + 1) - 2 * middle + arc_at(sigma - 1)
-    arc = np.clip(middle - 0.25 * bend, line.begin_mm[per_control], line.end_mm[per_control])
-    controls = line.at(arc)
+    three_mm = [arc_at(sigma + step) for step in (-1, 0, 1)]
+    arc, controls = _sharpened(*three_mm), _sharpened(*map(line.at, three_mm))
     starts = starts_of(count)
     half_mm = 0.5 * (line.end_mm - line.begin_mm)
     for ends_mm, first, sign, point, neighbour in (
@@ -203,6 +208,11 @@ def _sampled(line: _Polylines, spacing: _Spacing) -> tuple[PenPaths, FloatArray]
             controls[first + sign * k] = line.points_mm[point] + (offset * cubic_mm)[:, None] * tangent
             arc[first + sign * k] = ends_mm + sign * offset * cubic_mm
     return PenPaths(n_cells, controls), arc
+
+
+def _sharpened(before: FloatArray, at: FloatArray, behind: FloatArray) -> FloatArray:
+    sharpened: FloatArray = at - _SHARPENING * (before - 2 * at + behind)
+    return sharpened
 
 
 def _ramped(sigma: FloatArray, n_cells: IntArray) -> FloatArray:

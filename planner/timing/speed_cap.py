@@ -51,7 +51,7 @@ def _chord_speed(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz:
         at = along[open_points]
         before = _at(np.maximum(at - half, begin[open_points]), along, points)
         behind = _at(np.minimum(at + half, end[open_points]), along, points)
-        cut = _distance_to_line(points[open_points], before, behind) > sagitta_mm
+        cut = _distance_to_chord(points[open_points], before, behind) > sagitta_mm
         if speed < speed_mm_s:
             _restrict(allowed, speed, along, at[~cut], half)
         open_points = open_points[cut]
@@ -64,12 +64,12 @@ def _at(along_mm: FloatArray, axis_mm: FloatArray, points: FloatArray) -> FloatA
     return np.column_stack([np.interp(along_mm, axis_mm, column) for column in points.T])
 
 
-def _distance_to_line(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+def _distance_to_chord(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """(n,) from points to the segments, not the lines, from start to end: round a hairpin the line may miss nothing."""
     chord, offset = end - start, points - start
-    length = np.hypot(chord[:, 0], chord[:, 1])
-    across = np.abs(chord[:, 0] * offset[:, 1] - chord[:, 1] * offset[:, 0])
-    to_start = np.hypot(offset[:, 0], offset[:, 1])
-    distance: FloatArray = np.where(length > 1e-9, across / np.maximum(length, 1e-9), to_start)
+    along = np.einsum("ij,ij->i", chord, offset) / np.maximum(np.einsum("ij,ij->i", chord, chord), 1e-18)
+    off = offset - np.clip(along, 0.0, 1.0)[:, None] * chord
+    distance: FloatArray = np.hypot(off[:, 0], off[:, 1])
     return distance
 
 

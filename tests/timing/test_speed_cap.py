@@ -1,0 +1,34 @@
+"""Laws of the cap on the pen's speed: chords between samples stay near the path, hairpins included."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from planner.placement.pen_path import smooth_paths
+from planner.timing.speed_cap import rate_cap
+
+_SPEED_MM_S, _SAGITTA_MM, _RATE_HZ = 80.0, 0.02, 100.0
+_SLACK = 1.25
+"""Speeds are tried in steps, and caps hold from cell to cell: between them a chord may cut a little more."""
+
+
+@given(turns=st.lists(st.floats(-np.pi, np.pi), min_size=1, max_size=6), steps=st.integers(0, 2 ** 32 - 1))
+def test_a_chord_as_long_as_the_cap_allows_cuts_no_more_than_the_sagitta(turns: list[float], steps: int) -> None:
+    heading = np.cumsum([0.0, *turns])
+    lengths = np.random.default_rng(steps).uniform(0.3, 4.0, len(heading))
+    corners = np.cumsum(lengths[:, None] * np.column_stack((np.cos(heading), np.sin(heading))), axis=0)
+    paths = smooth_paths([np.vstack(([0.0, 0.0], corners))], 0.025)
+    cap = rate_cap(paths, _SPEED_MM_S, _SAGITTA_MM, _RATE_HZ)
+    slope = np.hypot(*paths.points(np.zeros(1), 1)[:, 0].T)
+    moving = slope > 0.0  # at the very start the pen rests
+    points, speed = paths.points(np.zeros(1))[moving, 0], cap[moving] * slope[moving]
+    way = shapely.LineString(paths.points(np.linspace(0, 1, 9)[:-1]).reshape(-1, 2))
+    for point, half_mm in zip(points, 0.5 * speed / _RATE_HZ, strict=True):
+        at = way.project(shapely.Point(point))
+        if np.hypot(*(np.array(way.interpolate(at).coords[0]) - point)) > 1e-3:
+            continue  # the path passes here twice, and this is the other time
+        chord = shapely.LineString([way.interpolate(max(at - half_mm, 0.0)), way.interpolate(at + half_mm)])
+        assert chord.distance(shapely.Point(point)) <= _SLACK * _SAGITTA_MM
