@@ -56,6 +56,11 @@ class TimedPaths:
         return SinglePath(joints, self.cap[cells[path]:cells[path + 1]], self.limits, float(self.time_s[path]))
 
 
+    def within(self, limits: Limits) -> TimedPaths:
+        """The same paths timed within other limits."""
+        return _timed(self.pen, self.joints, self.cap, limits)
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class SinglePath:
     """One joint path over sigma in [0, n_cells], with the cap (n_cells, 5) on dsigma/dt and the planner's time."""
@@ -124,6 +129,10 @@ def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> Ti
     limits = Limits.of(arm)
     cap = rate_cap(pen, FRACTIONS, settings.speed_mm_s, portions.SAMPLE_SHARE * settings.tolerance_mm,
                    settings.rate_hz)
+    return _timed(pen, joints, cap, limits)
+
+
+def _timed(pen: PenPaths, joints: JointPaths, cap: FloatArray, limits: Limits) -> TimedPaths:
     motion = motions(joints, minimum_time(problem_of(joints, limits, cap)).rates, limits, UNROUNDED_HZ)
     return TimedPaths(pen, joints, cap, limits, motion, motion.n_periods / UNROUNDED_HZ)
 

@@ -43,11 +43,12 @@ _HERMITE = np.array([[1.0, 0.0, -3.0, 2.0], [0.0, 1.0, -2.0, 1.0], [0.0, 0.0, 3.
 _GAP = 1e-3
 """Iteration stops where the barrier can still save less than this share of a path's time."""
 _BOUNDARY = 0.95
-_CENTRING = 0.4
-_START_GAP = 1.0
-"""Barrier at the start and its decrease with every step. A smaller one lets slacks run dry far from the optimum:
-steps then stay short, and the gap closes before the gradient does."""
-_START_SLOPE = 0.05
+_CENTRING, _MOST_CENTRING = 0.3, 0.9
+_START_GAP = 3.0
+"""Decrease of the barrier with every step, the less the shorter the step before had to be, and the barrier at the
+start. Smaller ones let slacks run dry far from the optimum: steps then stay short, and the gap closes before the
+gradient does."""
+_START_SLOPE = 0.1
 _COMPACT_BELOW = 0.7
 """Paths that are done leave the working set once fewer than this share of its cells is still being improved."""
 _LOWERED_BY = 1.2
@@ -192,9 +193,10 @@ class _Solver:
         room = allowed * (1.0 / np.sqrt(value))[:, None]
         return [1.0 - value * self.by_cap, 1.0 - acceleration, 1.0 + acceleration, room - jerk, room + jerk]
 
-    def total(self, per_cell: FloatArray) -> FloatArray:
+    def total(self, *per_cell: FloatArray) -> FloatArray:
         """(n_paths,) sums over all that belongs to a path."""
-        sums: FloatArray = np.add.reduceat(per_cell.reshape(-1, per_cell.shape[-1]).sum(axis=0), self.first_cell)
+        sums: FloatArray = np.add.reduceat(
+            sum(part.reshape(-1, part.shape[-1]).sum(axis=0) for part in per_cell), self.first_cell)
         return sums
 
     def smallest(self, per_cell: FloatArray) -> FloatArray:
@@ -208,7 +210,8 @@ class _Solver:
 
     def step(self, state: _State, alive: BoolArray) -> _State:
         """One primal-dual Newton step; each path takes the largest step that keeps it feasible."""
-        mu = np.where(alive, _CENTRING * state.gap, state.gap)[self.path_of_cell]
+        centring = np.clip(1.0 - state.step, _CENTRING, _MOST_CENTRING)
+        mu = np.where(alive, centring * state.gap, state.gap)[self.path_of_cell]
         value = state.value
         multipliers, slacks = state.multipliers, state.slacks
         pushes = [mu / slack for slack in slacks]  # the multipliers that the barrier wants
@@ -224,12 +227,8 @@ class _Solver:
         d_slacks = [-d_value * self.by_cap, -d_acceleration, d_acceleration, d_room - d_jerk, d_room + d_jerk]
         d_multipliers = [push - multiplier - weight * d for push, multiplier, weight, d
                          in zip(pushes, multipliers, stiffness, d_slacks, strict=True)]
-        dual = np.ones(self.n_paths)
-        for multiplier, d in zip(multipliers, d_multipliers, strict=True):
-            dual = np.minimum(dual, _BOUNDARY * self.until_zero(multiplier, d))
-        primal = np.minimum(1.0, _BOUNDARY * self.until_zero(value, d_value))
-        for slack, d in zip(slacks, d_slacks, strict=True):
-            primal = np.minimum(primal, _BOUNDARY * self.until_zero(slack, d))
+        dual = np.minimum(1.0, _BOUNDARY * self.until_zero(multipliers, d_multipliers))
+        primal = np.minimum(1.0, _BOUNDARY * self.until_zero([value, *slacks], [d_value, *d_slacks]))
         # The jerk limits curve, so a step that linearised slacks allow may still be too long.
         for _ in range(30):
             b = state.b + primal[self.path_of_unknown] * direction
@@ -248,7 +247,8 @@ class _Solver:
         scale = dual[self.path_of_cell]
         updated = [multiplier + scale * d for multiplier, d in zip(multipliers, d_multipliers, strict=True)]
         allowed = _allowed(values[0], values[2], state.allowed)
-        return _State.of(self, b, values[0], self.slacks(values, allowed), updated, allowed, stuck)
+        return _State.of(self, b, values[0], self.slacks(values, allowed), updated, allowed, np.minimum(primal, dual),
+                         stuck)
 
     def direction(self, state: _State, root: FloatArray, pushes: list[FloatArray], stiffness: list[FloatArray]
                   ) -> tuple[FloatArray, BoolArray]:
@@ -308,10 +308,12 @@ class _Solver:
         newton[failed[self.path_of_unknown]] = 0.0
         return newton, failed
 
-    def until_zero(self, value: FloatArray, change: FloatArray) -> FloatArray:
+    def until_zero(self, values: list[FloatArray], changes: list[FloatArray]) -> FloatArray:
         """(n_paths,) how many such changes the positive values of each path survive."""
-        fastest = self.smallest(change / value)
-        steps: FloatArray = np.where(fastest < 0, -1.0 / np.where(fastest < 0, fastest, -1.0), np.inf)
+        fastest = np.minimum.reduceat(np.minimum.reduce([
+            (change / value).reshape(-1, value.shape[-1]).min(axis=0, initial=0.0)
+            for value, change in zip(values, changes, strict=True)]), self.first_cell)
+        steps: FloatArray = -1.0 / np.minimum(fastest, -1e-9)
         return steps
 
 
@@ -319,8 +321,8 @@ class _Solver:
 class _State:
     """An iterate: unknowns, b at the points, slacks and their multipliers, and per path the mean product of the two.
 
-    allowed: (5, n_joints, cells) share of the jerk limits that is allowed at the points; stuck: (n_paths,) whether
-    there is no way on from here.
+    allowed: (5, n_joints, cells) share of the jerk limits that is allowed at the points; step: (n_paths,) share of
+    Newton's step that led here; stuck: (n_paths,) whether there is no way on from here.
     """
 
     b: FloatArray
@@ -330,13 +332,15 @@ class _State:
     allowed: FloatArray
     time_s: FloatArray
     gap: FloatArray
+    step: FloatArray
     stuck: BoolArray
 
     @staticmethod
     def of(solver: _Solver, b: FloatArray, value: FloatArray, slacks: list[FloatArray],
-           multipliers: list[FloatArray], allowed: FloatArray, stuck: BoolArray) -> _State:
-        products = sum(solver.total(multiplier * slack) for multiplier, slack in zip(multipliers, slacks, strict=True))
-        return _State(b, value, slacks, multipliers, allowed, solver.times_s(value), products / solver.n_limits, stuck)
+           multipliers: list[FloatArray], allowed: FloatArray, step: FloatArray, stuck: BoolArray) -> _State:
+        products = solver.total(*(multiplier * slack for multiplier, slack in zip(multipliers, slacks, strict=True)))
+        return _State(b, value, slacks, multipliers, allowed, solver.times_s(value), products / solver.n_limits, step,
+                      stuck)
 
     @staticmethod
     def starting(solver: _Solver, b: FloatArray) -> _State:
@@ -345,7 +349,7 @@ class _State:
         slacks = solver.slacks(values, allowed)
         mu = (_START_GAP * solver.times_s(values[0]) / solver.n_limits)[solver.path_of_cell]
         return _State.of(solver, b, values[0], slacks, [mu / slack for slack in slacks], allowed,
-                         np.zeros(solver.n_paths, dtype=bool))
+                         np.ones(solver.n_paths), np.zeros(solver.n_paths, dtype=bool))
 
     def subset(self, solver: _Solver, paths: BoolArray) -> _State:
         cells = paths[solver.path_of_cell]
@@ -353,7 +357,8 @@ class _State:
             self, b=self.b[paths[solver.path_of_unknown]], value=self.value[:, cells],
             slacks=[slack[..., cells] for slack in self.slacks],
             multipliers=[multiplier[..., cells] for multiplier in self.multipliers],
-            allowed=self.allowed[..., cells], time_s=self.time_s[paths], gap=self.gap[paths], stuck=self.stuck[paths])
+            allowed=self.allowed[..., cells], time_s=self.time_s[paths], gap=self.gap[paths], step=self.step[paths],
+            stuck=self.stuck[paths])
 
 
 _VALUE_FORMS = _powers(FRACTIONS, 0) @ _HERMITE.T
