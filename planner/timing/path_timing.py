@@ -12,7 +12,7 @@ and jerk limits are imposed at five points of every cell, acceleration limits at
 is larger between the points than at them, the limit at the nearest is lowered by as much.
 
 The problem is solved by a primal-dual interior-point method whose Newton systems are banded, so work is
-linear in the number of cells, and all paths are solved at once. Divided by sqrt(b), the jerk limit is a
+linear in the number of cells, and many paths are solved at once. Divided by sqrt(b), the jerk limit is a
 linear expression against J / sqrt(b); the curvature of that right-hand side is used where it leaves the
 Newton system positive definite and dropped elsewhere (sequential convex programming). Every iterate is
 strictly feasible: what is returned keeps the limits there even if the iteration stops early.
@@ -32,6 +32,8 @@ from planner.ragged import starts_of, within
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
 _MOST_ITERATIONS = 80
+_CELLS_AT_ONCE = 1250
+"""Paths of about so many cells are solved together: fewer cost more calls, more do not fit a processor's cache."""
 _ACCELERATION_POINTS = (0, 2)
 """Those at which acceleration limits are imposed; the right end is the left end of the next cell, or at rest."""
 
@@ -76,6 +78,13 @@ def minimum_time(problem: TimingProblem) -> PathTiming:
     Where the solver does not get there, the fallback is taken: what it has, or sigma at the greatest steady rate,
     whichever is faster. Either keeps the limits: a path is at rest at both ends whatever the rate.
     """
+    group = np.cumsum(problem.n_cells) // _CELLS_AT_ONCE
+    timings = [_timed_together(problem.subset(group == one)) for one in np.unique(group)]
+    return PathTiming(np.concatenate([timing.rates for timing in timings]),
+                      np.concatenate([timing.settled for timing in timings]))
+
+
+def _timed_together(problem: TimingProblem) -> PathTiming:
     solver = _Solver(problem)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # of paths that fail
         b, settled = _solved(solver)
