@@ -79,9 +79,9 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
         strokes = order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
         for _ in getting_ready:
             pass
-        timed, lost = _timed_strokes(crew, kit, strokes, report)
+        timed, notes = _timed_strokes(crew, kit, strokes, report)
         hops = _hops(crew, kit, timed, lift_mm, report)
-    warnings += lost
+    warnings += notes
     trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, timed, hops)
     _verify(trajectory, arm)
     return Plan(trajectory, _summary(trajectory, strokes, timed, hops, scale, size_mm, drawing, warnings))
@@ -142,7 +142,8 @@ def _reachable(arm: Arm) -> Callable[[FloatArray], BoolArray]:
 
 def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: Report
                    ) -> tuple[list[TimedStroke], list[str]]:
-    """Joint samples of all strokes that can be drawn; those that cannot are left out if the user wants so."""
+    """Joint samples of all strokes that can be drawn, and what is to be said of them; those that cannot are left out if
+    the user wants so."""
     settings = kit.settings
     timed: list[TimedStroke] = []
     done = lost = 0
@@ -160,7 +161,10 @@ def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: 
         report("drawing motions", done, len(strokes))
     if not timed:
         raise PlanError("nothing of the drawing can be drawn within the joint limits")
-    return timed, [f"left out whole, as method {settings.method} cannot draw them: {lost} strokes"] if lost else []
+    unsettled = sum(not stroke.settled for stroke in timed)
+    counted = [(lost, f"left out whole, as method {settings.method} cannot draw them"),
+               (unsettled, "timed by the fallback, slower than the least time")]
+    return timed, [f"{what}: {count} strokes" for count, what in counted if count]
 
 
 def _hops(crew: Crew, kit: Kit, timed: Sequence[TimedStroke], lift_mm: float, report: Report) -> list[Hop]:

@@ -21,9 +21,10 @@ from planner.placement.pen_path import smooth_paths
 from planner.settings import PlanSettings
 from planner.timing.hops import Hop, HopRules, Touch, plan_hops
 from planner.timing.limits import Limits
-from planner.timing.path_timing import FRACTIONS, TimingProblem, minimum_time
+from planner.timing.path_timing import minimum_time
 from planner.timing.speed_cap import rate_cap
 from planner.timing.stroke_motion import motions
+from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
 SMOOTH_SHARE, SAMPLE_SHARE = 0.5, 0.4
 """Shares of the tolerance: rounded corners, and the straight lines between samples."""
@@ -39,12 +40,16 @@ _TAP_S = 0.05
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TimedStroke:
-    """A stroke ready to be drawn: joint samples (n, n_joints) and where it touches down and lifts off."""
+    """A stroke ready to be drawn: joint samples (n, n_joints) and where it touches down and lifts off.
+
+    settled: whether its timing is near the least time, rather than the fallback.
+    """
 
     joints: FloatArray
     first: Touch
     last: Touch
     dwell_samples: int
+    settled: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,16 +151,16 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
     for _ in range(_TIMING_HALVINGS):
         paths, splines = paths.halved(), splines.halved()
     derivatives = (splines.positions(FRACTIONS, 1), splines.positions(FRACTIONS, 2), splines.positions(FRACTIONS, 3))
-    problem = TimingProblem.of(paths.n_cells, derivatives, (limits.velocity, limits.acceleration, limits.jerk),
-                               rate_cap(paths, settings.speed_mm_s, SAMPLE_SHARE * settings.tolerance_mm,
-                                        settings.rate_hz))
-    motion = motions(splines, minimum_time(problem), limits, settings.rate_hz)
+    cap = rate_cap(paths, FRACTIONS, settings.speed_mm_s, SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz)
+    problem = TimingProblem.of(paths.n_cells, derivatives, limits, cap)
+    timing = minimum_time(problem)
+    motion = motions(splines, timing.rates, limits, settings.rate_hz)
     kinematics = kinematics_of(arm)
     dwell = round(settings.dwell_s * settings.rate_hz)
     timed: list[TimedStroke | Obstacle] = []
-    for stroke, joints in zip(strokes, motion.samples(), strict=True):
+    for stroke, joints, settled in zip(strokes, motion.samples(), timing.settled.tolist(), strict=True):
         free = kinematics.free_of(joints)
-        timed.append(TimedStroke(joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell))
+        timed.append(TimedStroke(joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell, settled))
     return timed
 
 

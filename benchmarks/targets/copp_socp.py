@@ -27,6 +27,7 @@ from planner.settings import PlanSettings
 from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
 from planner.timing.stroke_motion import motions
+from planner.timing.timing_problem import FRACTIONS
 
 Value = TypeVar("Value")
 
@@ -80,11 +81,11 @@ def _planner(curve: BSpline[np.float64], limits: Limits) -> tuple[float, float]:
         return _RAMP * (2 * x ** 3 - 2 * x ** 4 + 0.6 * x ** 5) + np.maximum(distance - _RAMP, 0.0)
 
     way = ramp(sigma) + ramp(np.array([float(_CELLS)])) - ramp(_CELLS - sigma) - sigma
-    cells, cap = np.array([_CELLS]), np.full(_CELLS, np.inf)
+    cells, cap = np.array([_CELLS]), np.full((_CELLS, len(FRACTIONS)), np.inf)
 
     def plan() -> float:
         paths = interpolate(cells, curve(np.clip(way / way[-1], 0.0, 1.0)))
-        motion = motions(paths, minimum_time(problem_of(paths, limits, cap)), limits, UNROUNDED_HZ)
+        motion = motions(paths, minimum_time(problem_of(paths, limits, cap)).rates, limits, UNROUNDED_HZ)
         return float(motion.n_periods[0]) / UNROUNDED_HZ
     return _best(plan)
 

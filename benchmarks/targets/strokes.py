@@ -24,19 +24,22 @@ from planner.placement.pen_path import PenPaths, smooth_paths
 from planner.ragged import starts_of
 from planner.settings import PlanSettings
 from planner.timing.limits import Limits
-from planner.timing.path_timing import FRACTIONS, TimingProblem, minimum_time
+from planner.timing.path_timing import minimum_time
 from planner.timing.speed_cap import rate_cap
 from planner.timing.stroke_motion import StrokeMotions, motions
+from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
 UNROUNDED_HZ = 1e6
 """A sample rate at which rounding up to whole periods is nothing."""
+
+_NO_CAP = 1e9
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TimedPaths:
     """Pen and joint paths of many strokes in the cells that they are timed with.
 
-    cap: (total cells,) on dsigma/dt at the left end of each cell; time_s: (n_paths,), all limits kept between the cell
+    cap: (total cells, 5) on dsigma/dt at FRACTIONS of each cell; time_s: (n_paths,), all limits kept between the cell
     ends as well, not rounded to sample periods.
     """
 
@@ -53,9 +56,14 @@ class TimedPaths:
         return SinglePath(joints, self.cap[cells[path]:cells[path + 1]], self.limits, float(self.time_s[path]))
 
 
+    def within(self, limits: Limits) -> TimedPaths:
+        """The same paths timed within other limits."""
+        return _timed(self.pen, self.joints, self.cap, limits)
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class SinglePath:
-    """One joint path over sigma in [0, n_cells], with the cap (n_cells,) on dsigma/dt and the planner's time."""
+    """One joint path over sigma in [0, n_cells], with the cap (n_cells, 5) on dsigma/dt and the planner's time."""
 
     joints: JointPaths
     cap: FloatArray
@@ -72,8 +80,11 @@ class SinglePath:
         return self.joints.at(cell, sigma - cell, order)
 
     def cap_at(self, sigma: FloatArray) -> FloatArray:
-        """(n,) the cap between the cell ends, joined by straight lines."""
-        return np.interp(sigma, np.arange(self.n_cells), self.cap)
+        """(n,) the cap between the FRACTIONS, joined by straight lines."""
+        shared = np.minimum(self.cap[1:, 0], self.cap[:-1, -1])  # where cells meet
+        cap = np.concatenate((self.cap[:1, 0], np.column_stack((self.cap[:-1, 1:-1], shared)).ravel(),
+                              self.cap[-1, 1:]))
+        return np.interp(sigma, np.linspace(0.0, self.n_cells, len(cap)), np.minimum(cap, _NO_CAP))
 
 
 def drawings(folder: Path) -> list[Path]:
@@ -116,8 +127,13 @@ def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> Ti
     for _ in range(portions._TIMING_HALVINGS):
         pen, joints = pen.halved(), joints.halved()
     limits = Limits.of(arm)
-    cap = rate_cap(pen, settings.speed_mm_s, portions.SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz)
-    motion = motions(joints, minimum_time(problem_of(joints, limits, cap)), limits, UNROUNDED_HZ)
+    cap = rate_cap(pen, FRACTIONS, settings.speed_mm_s, portions.SAMPLE_SHARE * settings.tolerance_mm,
+                   settings.rate_hz)
+    return _timed(pen, joints, cap, limits)
+
+
+def _timed(pen: PenPaths, joints: JointPaths, cap: FloatArray, limits: Limits) -> TimedPaths:
+    motion = motions(joints, minimum_time(problem_of(joints, limits, cap)).rates, limits, UNROUNDED_HZ)
     return TimedPaths(pen, joints, cap, limits, motion, motion.n_periods / UNROUNDED_HZ)
 
 
@@ -130,4 +146,4 @@ def timed_in_portions(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSet
 
 def problem_of(joints: JointPaths, limits: Limits, cap: FloatArray) -> TimingProblem:
     derivatives = (joints.positions(FRACTIONS, 1), joints.positions(FRACTIONS, 2), joints.positions(FRACTIONS, 3))
-    return TimingProblem.of(joints.n_cells, derivatives, (limits.velocity, limits.acceleration, limits.jerk), cap)
+    return TimingProblem.of(joints.n_cells, derivatives, limits, cap)

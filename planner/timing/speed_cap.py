@@ -15,22 +15,24 @@ _GAP_MM = 1e4
 _ENDS = np.array([0.0, 1.0])
 
 
-def rate_cap(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz: float) -> FloatArray:
-    """(total cells,) cap on dsigma/dt at the left end of every cell.
+def rate_cap(paths: PenPaths, fractions: FloatArray, speed_mm_s: float, sagitta_mm: float, rate_hz: float
+             ) -> FloatArray:
+    """(total cells, n_fractions) cap on dsigma/dt at fractions of every cell.
 
     Controllers join samples by straight lines. A line that spans a length l of path cuts a corner in its middle by the
     sagitta of the chord from l/2 before to l/2 behind; so within l/2 of a point where that chord would cut too much the
     pen may not go faster than l per sample period.
     """
-    speed = np.minimum(speed_mm_s, _chord_speed(paths, speed_mm_s, sagitta_mm, rate_hz))
-    slope = paths.points(_ENDS[:1], 1)[:, 0]
+    left, right = _chord_speed(paths, speed_mm_s, sagitta_mm, rate_hz)
+    slope = paths.points(fractions, 1)
     with np.errstate(divide="ignore"):
-        cap: FloatArray = speed / np.hypot(slope[:, 0], slope[:, 1])
+        cap: FloatArray = (left[:, None] + fractions * (right - left)[:, None]) / np.hypot(slope[..., 0], slope[..., 1])
     return cap
 
 
-def _chord_speed(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz: float) -> FloatArray:
-    """(total cells,) the speed that chords allow at the left end of every cell."""
+def _chord_speed(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz: float
+                 ) -> tuple[FloatArray, FloatArray]:
+    """(total cells,) the speeds that chords allow at the left and the right end of every cell."""
     ends = paths.points(_ENDS)
     steps = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
     first = starts_of(paths.n_cells)[:-1]
@@ -39,8 +41,8 @@ def _chord_speed(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz:
     points = np.insert(ends[:, 0], last + 1, ends[last, 1], axis=0)
     steps = np.insert(steps, last + 1, _GAP_MM)
     along = np.concatenate(([0.0], np.cumsum(steps)[:-1]))
-    is_knot = np.ones(len(points), dtype=bool)
-    is_knot[last + 1 + np.arange(len(last))] = False
+    is_left = np.ones(len(points), dtype=bool)
+    is_left[last + 1 + np.arange(len(last))] = False
     begin = np.repeat(along[first + np.arange(len(first))], paths.n_cells + 1)
     end = np.repeat(along[last + 1 + np.arange(len(last))], paths.n_cells + 1)
     allowed = np.full(len(points), speed_mm_s)
@@ -57,7 +59,7 @@ def _chord_speed(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz:
         open_points = open_points[cut]
         speed *= _STEP
     _restrict(allowed, speed, along, along[open_points], 0.5 * speed / rate_hz)
-    return allowed[is_knot]
+    return allowed[is_left], allowed[1:][is_left[:-1]]
 
 
 def _at(along_mm: FloatArray, axis_mm: FloatArray, points: FloatArray) -> FloatArray:

@@ -11,8 +11,9 @@ from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import DEGREE, JointPaths, interpolate
 from planner.placement.pen_path import smooth_paths
 from planner.timing.limits import Limits
-from planner.timing.path_timing import FRACTIONS, TimingProblem, minimum_time
+from planner.timing.path_timing import minimum_time
 from planner.timing.stroke_motion import StrokeMotions, motions
+from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
 LIMITS = Limits(np.array([4.0, 6.0]), np.array([60.0, 80.0]), np.array([1500.0, 1200.0]))
 """Of a joint that turns (rad) and one that slides (cm), so that both have their say."""
@@ -37,13 +38,13 @@ def polar_paths(lines: list[FloatArray]) -> JointPaths:
 
 def problem_of(paths: JointPaths, limits: Limits = LIMITS, rate_cap: float = np.inf) -> TimingProblem:
     derivatives = (paths.positions(FRACTIONS, 1), paths.positions(FRACTIONS, 2), paths.positions(FRACTIONS, 3))
-    return TimingProblem.of(paths.n_cells, derivatives, (limits.velocity, limits.acceleration, limits.jerk),
-                            np.full(int(paths.n_cells.sum()), rate_cap))
+    return TimingProblem.of(paths.n_cells, derivatives, limits,
+                            np.full((int(paths.n_cells.sum()), len(FRACTIONS)), rate_cap))
 
 
 def timed(paths: JointPaths, limits: Limits = LIMITS, rate_hz: float = 100.0, rate_cap: float = np.inf
           ) -> StrokeMotions:
-    return motions(paths, minimum_time(problem_of(paths, limits, rate_cap)), limits, rate_hz)
+    return motions(paths, minimum_time(problem_of(paths, limits, rate_cap)).rates, limits, rate_hz)
 
 
 def seen_often(motion: StrokeMotions, times: int) -> StrokeMotions:
