@@ -12,7 +12,8 @@ _STEP = 0.85
 """Ratio of the speeds that are tried, one after the other."""
 _SLOWEST = 0.01
 _GAP_MM = 1e4
-_ENDS = np.array([0.0, 1.0])
+_PARTS = 2
+"""Parts of a cell at whose ends chords are tried: a hairpin may turn in the middle of one."""
 
 
 def rate_cap(paths: PenPaths, fractions: FloatArray, speed_mm_s: float, sagitta_mm: float, rate_hz: float
@@ -23,28 +24,29 @@ def rate_cap(paths: PenPaths, fractions: FloatArray, speed_mm_s: float, sagitta_
     sagitta of the chord from l/2 before to l/2 behind; so within l/2 of a point where that chord would cut too much the
     pen may not go faster than l per sample period.
     """
-    left, right = _chord_speed(paths, speed_mm_s, sagitta_mm, rate_hz)
+    speeds = _chord_speeds(paths, speed_mm_s, sagitta_mm, rate_hz)
+    between = np.maximum(1.0 - np.abs(_PARTS * fractions - np.arange(_PARTS + 1)[:, None]), 0.0)
     slope = paths.points(fractions, 1)
     with np.errstate(divide="ignore"):
-        cap: FloatArray = (left[:, None] + fractions * (right - left)[:, None]) / np.hypot(slope[..., 0], slope[..., 1])
+        cap: FloatArray = speeds @ between / np.hypot(slope[..., 0], slope[..., 1])
     return cap
 
 
-def _chord_speed(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz: float
-                 ) -> tuple[FloatArray, FloatArray]:
-    """(total cells,) the speeds that chords allow at the left and the right end of every cell."""
-    ends = paths.points(_ENDS)
-    steps = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
-    first = starts_of(paths.n_cells)[:-1]
+def _chord_speeds(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz: float) -> FloatArray:
+    """(total cells, _PARTS + 1) the speeds that chords allow at the ends of the parts of every cell."""
+    ends = paths.points(np.linspace(0.0, 1.0, _PARTS + 1))
+    steps = np.hypot(*np.moveaxis(np.diff(ends, axis=1), 2, 0)).ravel()
+    n_parts = _PARTS * paths.n_cells
+    first = starts_of(n_parts)[:-1]
     # One axis of arc length for all paths, with the end of each path as a point of its own and a gap behind it.
-    last = first + paths.n_cells - 1
-    points = np.insert(ends[:, 0], last + 1, ends[last, 1], axis=0)
+    last = first + n_parts - 1
+    points = np.insert(ends[:, :-1].reshape(-1, 2), last + 1, ends[np.cumsum(paths.n_cells) - 1, -1], axis=0)
     steps = np.insert(steps, last + 1, _GAP_MM)
     along = np.concatenate(([0.0], np.cumsum(steps)[:-1]))
     is_left = np.ones(len(points), dtype=bool)
     is_left[last + 1 + np.arange(len(last))] = False
-    begin = np.repeat(along[first + np.arange(len(first))], paths.n_cells + 1)
-    end = np.repeat(along[last + 1 + np.arange(len(last))], paths.n_cells + 1)
+    begin = np.repeat(along[first + np.arange(len(first))], n_parts + 1)
+    end = np.repeat(along[last + 1 + np.arange(len(last))], n_parts + 1)
     allowed = np.full(len(points), speed_mm_s)
     open_points = np.arange(len(points))  # where the chord of the speed at hand still cuts too much
     speed = speed_mm_s
@@ -59,7 +61,8 @@ def _chord_speed(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz:
         open_points = open_points[cut]
         speed *= _STEP
     _restrict(allowed, speed, along, along[open_points], 0.5 * speed / rate_hz)
-    return allowed[is_left], allowed[1:][is_left[:-1]]
+    left, right = (side.reshape(-1, _PARTS) for side in (allowed[is_left], allowed[1:][is_left[:-1]]))
+    return np.column_stack((left, right[:, -1]))
 
 
 def _at(along_mm: FloatArray, axis_mm: FloatArray, points: FloatArray) -> FloatArray:

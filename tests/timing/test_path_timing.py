@@ -97,10 +97,10 @@ def test_a_stroke_is_timed_as_if_it_were_alone() -> None:
     for line, (first, last) in zip(LINES.values(), pairwise(begins.tolist()), strict=True):
         alone = minimum_time(problem_of(polar_paths([line]))).rates
         assert len(alone) == last - first
-        for fraction in (0.0, 0.3, 0.6, 1.0):
-            powers = fraction ** np.arange(4)
-            # Not to the last digit: among others a path may be asked for accelerations that it cannot reach.
-            np.testing.assert_allclose(together[first:last] @ powers, alone @ powers, rtol=3e-3)
+        # Its motion may differ in places that hardly matter; its time does not.
+        powers = np.linspace(0.0, 1.0, 21) ** np.arange(4)[:, None]
+        times_s = [float((1 / np.sqrt(rates @ powers)).mean(axis=1).sum()) for rates in (together[first:last], alone)]
+        assert times_s[0] == pytest.approx(times_s[1], rel=2e-3)
 
 
 def test_the_cap_on_the_rate_is_kept() -> None:

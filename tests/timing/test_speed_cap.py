@@ -22,7 +22,7 @@ def test_a_chord_as_long_as_the_cap_allows_cuts_no_more_than_the_sagitta(turns: 
     lengths = np.random.default_rng(steps).uniform(0.3, 4.0, len(heading))
     corners = np.cumsum(lengths[:, None] * np.column_stack((np.cos(heading), np.sin(heading))), axis=0)
     paths = smooth_paths([np.vstack(([0.0, 0.0], corners))], 0.025)
-    cap = rate_cap(paths, _SPEED_MM_S, _SAGITTA_MM, _RATE_HZ)
+    cap = rate_cap(paths, np.zeros(1), _SPEED_MM_S, _SAGITTA_MM, _RATE_HZ)[:, 0]
     slope = np.hypot(*paths.points(np.zeros(1), 1)[:, 0].T)
     way = paths.points(np.linspace(0, 1, _FINE, endpoint=False)).reshape(-1, 2)
     along_mm = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))))
