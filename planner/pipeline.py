@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -68,8 +69,7 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
     lift_mm = arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
     if lift_mm < arm.pen.clearance_mm:
         raise UsageError(f"a lift of {lift_mm:g} mm is below the arm's pen clearance of {arm.pen.clearance_mm:g} mm")
-    with crew_of(_worth_hiring(workers, drawing_file)) as crew:
-        getting_ready = crew(make_ready, [kit] * workers.count)  # while this process reads
+    with crew_of(_worth_hiring(workers, drawing_file), partial(make_ready, kit)) as crew:
         report("reading", 0, 1)
         drawing = read_drawing(drawing_file)
         svg_to_arm, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
@@ -77,8 +77,6 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
         report("ordering strokes", 0, 1)
         canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
         strokes = order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
-        for _ in getting_ready:
-            pass
         timed, lost = _timed_strokes(crew, kit, strokes, report)
         hops = _hops(crew, kit, timed, lift_mm, report)
     warnings += lost
