@@ -22,6 +22,7 @@ from planner.cli import main
 from planner.cli.plan import _parser
 from planner.errors import ArmFileError, PlannerError, TargetOutOfReach, UsageError
 from planner.pipeline import plan
+from planner.placement.pieces import Piece
 from planner.portions import Kit, stroke_portions
 from planner.settings import Method, PlanSettings
 from planner.trajectory import read_trajectory, write_trajectory
@@ -72,16 +73,17 @@ def test_every_error_can_be_sent_from_process_to_process() -> None:
     assert type(copy) is TargetOutOfReach and str(copy) == str(error) and copy.__dict__ == error.__dict__
 
 
-def test_portions_are_cut_by_the_drawing_and_hold_every_stroke_once() -> None:
-    strokes = [np.zeros((n, 2)) for n in (1500, 800, 1, 2500, 700, 3)]
-    cut = list(stroke_portions(Kit.of(load_once("drawing_arm"), PlanSettings()), strokes))
-    assert [len(stroke) for portion in cut for stroke in portion.strokes] == [1500, 800, 1, 2500, 700, 3]
-    assert [len(portion.strokes) for portion in cut] == [2, 2, 2]
+def test_portions_are_bounded_and_hold_every_piece_once() -> None:
+    sizes = [1500.0, 800.0, 0.0, 4500.0, 3000.0, 900.0, 0.0]
+    pieces = [Piece(np.full((2, 2), float(index)), size) for index, size in enumerate(sizes)]
+    cut = list(stroke_portions(Kit.of(load_once("drawing_arm"), PlanSettings()), pieces))
+    assert [[int(points[0, 0]) for points in portion.strokes] for portion in cut] == [[0, 1, 2], [3], [4, 5, 6]]
+    assert list(stroke_portions(Kit.of(load_once("drawing_arm"), PlanSettings()), [])) == []
 
 
 def test_the_same_bytes_whatever_the_number_of_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline, "_SMALL_BYTES", 0)
-    monkeypatch.setattr(portions, "_PORTION_POINTS", 100)
+    monkeypatch.setattr(portions, "_PORTION_CELLS", 150)
     monkeypatch.setattr(portions, "_PORTION_HOPS", 4)
     drawing = scribbles(tmp_path / "scribbles.svg", 8, 60)
     written = []

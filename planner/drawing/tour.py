@@ -54,7 +54,7 @@ class _Search:
     def __init__(self, start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, norm: Norm) -> None:
         self.n = len(tour)
         self.norm = norm
-        self.nodes = np.stack([np.vstack([entries, start]), np.vstack([exits, start])], axis=1)
+        self.nodes: FloatArray = np.stack([np.vstack([entries, start]), np.vstack([exits, start])], axis=1)
         self.nodes = self.nodes.reshape(2 * self.n + 2, -1)
         self.tour: IntArray = np.concatenate([[2 * self.n], 2 * tour])
         self.position = np.empty(self.n + 1, dtype=np.int64)
@@ -88,7 +88,7 @@ class _Search:
 
     def _length(self, one: IntArray, other: IntArray) -> FloatArray:
         """Travel between nodes; nothing where `other` is -1, the free end."""
-        distance = self.norm.distance(self.nodes[one], self.nodes[other])
+        distance: FloatArray = self.norm.distance(self.nodes[one], self.nodes[other])
         distance[other < 0] = 0.0
         return distance
 
@@ -104,7 +104,8 @@ class _Search:
     def _two_opt_gain(self, first: IntArray, last: IntArray, link: FloatArray) -> FloatArray:
         before, after = self.tour[first - 1] ^ 1, self._after(last)
         head, tail = self.tour[first], self.tour[last] ^ 1
-        return link[head] + link[tail] - self._length(before, tail) - self._length(head, after)
+        gain: FloatArray = link[head] + link[tail] - self._length(before, tail) - self._length(head, after)
+        return gain
 
     def _two_opt_round(self) -> int:
         link, a, b = self._links()
