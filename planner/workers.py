@@ -15,7 +15,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from contextlib import closing, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol, TypeVar
@@ -70,8 +70,8 @@ def crew_of(workers: Workers, prepare: Callable[[], None] | None = None) -> Iter
         with _processes(workers.count - 1, prepare) as executor:
             yield partial(_shared, executor, workers.count - 1, True)
     else:
-        with _cluster(workers.cluster) as client, closing(client.get_executor()) as executor:
-            yield partial(_shared, executor, sum(client.ncores().values()), False)
+        with _cluster(workers.cluster) as client, client.get_executor() as executor:
+            yield partial(_on_cluster, partial(_shared, executor, sum(client.ncores().values()), False))
 
 
 def _in_turn(work: Callable[[Portion], Result], portions: Iterable[Portion]) -> Iterator[Result]:
@@ -95,6 +95,19 @@ def _shared(executor: Executor, n_others: int, joins_in: bool, work: Callable[[P
     finally:
         for future in due:
             future.cancel()
+
+
+def _on_cluster(shared: Crew, work: Callable[[Portion], Result], portions: Iterable[Portion]) -> Iterator[Result]:
+    return shared(partial(_one_at_a_time, work), portions)
+
+
+_at_work = threading.Lock()
+
+
+def _one_at_a_time(work: Callable[[Portion], Result], portion: Portion) -> Result:
+    """Threads of one process take turns: they share the models of the arm, and these their buffers."""
+    with _at_work:
+        return work(portion)
 
 
 def _done(work: Callable[[Portion], Result], portion: Portion) -> Future[Result]:
