@@ -29,8 +29,8 @@ from planner.timing.stroke_motion import motions
 SMOOTH_SHARE, SAMPLE_SHARE = 0.5, 0.4
 """Shares of the tolerance: rounded corners, and the straight lines between samples."""
 
-_PORTION_CELLS = 4000.0
-_FEWEST_CELLS = 10.0
+_PORTION_WORK = 4000.0
+_LEAST_WORK = 10.0
 """What a stroke of no length costs at least."""
 _PORTION_HOPS = 125
 _TIMING_HALVINGS = 1
@@ -107,12 +107,12 @@ def pieces_of(strokes: Sequence[FloatArray], settings: PlanSettings) -> list[lis
 
 def stroke_portions(kit: Kit, pieces: Sequence[Piece]) -> Iterator[StrokePortion]:
     """Pieces put together to portions of bounded size: by the drawing alone, never by who makes them."""
-    first, cells = 0, 0.0
+    first, work = 0, 0.0
     for index, piece in enumerate(pieces):
-        if index > first and cells + piece.n_cells > _PORTION_CELLS:
+        if index > first and work + piece.work > _PORTION_WORK:
             yield StrokePortion(kit, [piece.points_mm for piece in pieces[first:index]])
-            first, cells = index, 0.0
-        cells += piece.n_cells + _FEWEST_CELLS
+            first, work = index, 0.0
+        work += piece.work + _LEAST_WORK
     if pieces:
         yield StrokePortion(kit, [piece.points_mm for piece in pieces[first:]])
 

@@ -51,7 +51,7 @@ def scheduler(tmp_path: Path) -> Iterator[Path]:
 
 def test_a_cluster_plans_the_same_bytes(scheduler: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
                                         capfd: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(portions, "_PORTION_CELLS", 150)
+    monkeypatch.setattr(portions, "_PORTION_WORK", 150)
     monkeypatch.setattr(portions, "_PORTION_HOPS", 4)
     address = json.loads(scheduler.read_text(encoding="utf-8"))["address"]
     drawing = scribbles(tmp_path / "scribbles.svg", 6, 30)

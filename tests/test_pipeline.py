@@ -207,7 +207,7 @@ def test_what_is_out_of_reach_is_named_or_left_out(tmp_path: Path) -> None:
 def test_a_very_long_stroke_is_drawn_in_pieces_without_lifting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shapes = [polyline(*((4.0 * k, 8.0 * (k % 2) + k) for k in range(9)))]
     whole = planned(tmp_path, shapes, PlanSettings(rate_hz=500.0)).trajectory
-    monkeypatch.setattr(pieces, "_CELLS", 50)
+    monkeypatch.setattr(pieces, "_WORK", 50)
     trajectory = planned(tmp_path, shapes, PlanSettings(rate_hz=500.0)).trajectory
     assert not np.array_equal(trajectory.positions, whole.positions)  # it was cut
     assert_checked(trajectory, tmp_path)

@@ -32,7 +32,7 @@ def test_the_stroke_that_cannot_be_drawn_is_the_one_that_is_told() -> None:
 
 @pytest.mark.parametrize("method", [Method.PATH, Method.CLOSED_FORM])
 def test_pieces_join_to_one_stroke_at_rest_where_they_meet(method: Method, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("planner.placement.pieces._CELLS", 100)
+    monkeypatch.setattr("planner.placement.pieces._WORK", 100)
     x = np.linspace(-30.0, 30.0, 200)
     stroke = np.column_stack((130.0 + 4.0 * np.abs((x + 30.0) % 8.0 - 4.0), x))
     settings = PlanSettings(method=method)

@@ -60,8 +60,8 @@ def test_every_error_can_be_sent_from_process_to_process() -> None:
 
 def test_the_same_bytes_whatever_the_number_of_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline, "_SMALL_BYTES", 0)
-    monkeypatch.setattr(portions, "_PORTION_CELLS", 150)
-    monkeypatch.setattr(pieces, "_CELLS", 100)
+    monkeypatch.setattr(portions, "_PORTION_WORK", 150)
+    monkeypatch.setattr(pieces, "_WORK", 100)
     monkeypatch.setattr(portions, "_PORTION_HOPS", 4)
     drawing = scribbles(tmp_path / "scribbles.svg", 8, 60)
     written = []
