@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import resource
 import subprocess
 import sys
 import tempfile
 import threading
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 from planner.settings import PlanSettings
@@ -14,21 +16,36 @@ from planner.settings import PlanSettings
 _WATCH_S = 0.02
 
 
-def planned(drawing: Path, settings: PlanSettings) -> tuple[float, float]:
-    """Wall time in s and peak memory in MB of planning a drawing, start of Python and worker processes included."""
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What planning took, start of Python and worker processes included: wall time, that of all processors together,
+    and the most memory at a time."""
+
+    wall_s: float
+    processors_s: float
+    peak_mb: float
+
+
+def planned(drawing: Path, settings: PlanSettings) -> Cost:
+    """Plan a drawing by the command. Errors: RuntimeError with what the command said."""
     root = Path(__file__).resolve().parents[2]
     with tempfile.TemporaryDirectory() as folder:
-        began = time.perf_counter()
+        began, used_s = time.perf_counter(), _children_s()
         process = subprocess.Popen(
             [sys.executable, "-m", "planner.cli", str(drawing), "-o", str(Path(folder) / "traj.csv"), "--quiet",
              "--arm", settings.arm], cwd=root, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         peak = _Peak(process.pid)
         _, errors = process.communicate()
-        seconds = time.perf_counter() - began
-        megabytes = peak.stop()
+        cost = Cost(time.perf_counter() - began, _children_s() - used_s, peak.stop())
     if process.returncode:
         raise RuntimeError(f"{drawing.name}: exit code {process.returncode}: {errors.decode().strip()}")
-    return seconds, megabytes
+    return cost
+
+
+def _children_s() -> float:
+    """Processor time of all descendants that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 class _Peak:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.targets.family import planned
+from benchmarks.targets.family import Cost, planned
 from benchmarks.targets.row import Row
 from benchmarks.targets.strokes import placed_strokes
 from planner.arms.arm_file import load_arm
@@ -21,7 +21,7 @@ _SHIFT = 0.002
 """Copies of a drawing are shifted by this share of its size: the density of points on the paper then stays, and with
 it the work per point."""
 _LINEAR = 1.2
-"""Time per point at the most points against that at the least, at most."""
+"""Processor time per point at the most points against that at the least, at most."""
 _MOST_MB = 1024
 _TURNS = 200
 _SPIRAL_MM = (5.0, 100.0)
@@ -37,7 +37,7 @@ def many_strokes(drawing: Path, settings: PlanSettings) -> list[Row]:
             count = -(-wanted // own)
             file = Path(folder) / "many.svg"
             file.write_text(_overlaid(strokes, count))
-            runs.append((count * own, count * len(strokes), *planned(file, settings)))
+            runs.append((count * own, count * len(strokes), planned(file, settings)))
     return _rows(f"{drawing.stem} over itself", runs)
 
 
@@ -48,18 +48,18 @@ def one_stroke(settings: PlanSettings) -> list[Row]:
         for count in _POINTS:
             file = Path(folder) / "spiral.svg"
             file.write_text(_svg(_polyline(_spiral(count)), np.full(2, 2 * _SPIRAL_MM[1])))
-            runs.append((count, 1, *planned(file, settings)))
+            runs.append((count, 1, planned(file, settings)))
     return _rows("one spiral", runs)
 
 
-def _rows(what: str, runs: Sequence[tuple[int, int, float, float]]) -> list[Row]:
-    each_us = [1e6 * seconds / points for points, _, seconds, _ in runs]
+def _rows(what: str, runs: Sequence[tuple[int, int, Cost]]) -> list[Row]:
+    each_us = [1e6 * cost.processors_s / points for points, _, cost in runs]
     grows = each_us[-1] / each_us[0]
-    most_mb = max(megabytes for *_, megabytes in runs)
+    most_mb = max(cost.peak_mb for *_, cost in runs)
     measured = "; ".join(
-        f"{points} points, {n_strokes} strokes: {seconds:.1f} s, {us:.0f} µs a point, {megabytes:.0f} MB"
-        for (points, n_strokes, seconds, megabytes), us in zip(runs, each_us, strict=True))
-    return [Row(f"{what}, up to a million points", f"time per point ≤ {_LINEAR} x that of a quarter, ≤ {_MOST_MB} MB",
+        f"{points} points, {n_strokes} strokes: {cost.wall_s:.1f} s, {us:.0f} µs of processors a point,"
+        f" {cost.peak_mb:.0f} MB" for (points, n_strokes, cost), us in zip(runs, each_us, strict=True))
+    return [Row(f"{what}, up to a million points", f"linear: a point ≤ {_LINEAR} x that of a quarter; ≤ {_MOST_MB} MB",
                 f"{measured}: {grows:.2f} x", grows <= _LINEAR and most_mb <= _MOST_MB)]
 
 

