@@ -20,7 +20,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks.targets import copp_socp, postures, smooth, speed, whole
+from benchmarks.targets import copp_socp, postures, scale, smooth, speed, whole
 from benchmarks.targets.row import Row, markdown
 from benchmarks.targets.strokes import drawings
 from planner.errors import PlannerError
@@ -40,6 +40,8 @@ MEASURES: dict[str, Measure] = {
     "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),
     "postures": lambda _, drawing, settings: speed.postures(drawing, settings),
     "end-to-end": lambda _, drawing, settings: speed.end_to_end(drawing, settings),
+    "million-points": lambda _, drawing, settings: scale.many_strokes(drawing, settings),
+    "long-stroke": lambda _, __, settings: scale.one_stroke(settings),
 }
 LIBRARIES = ("numpy", "scipy", "casadi", "ruckig", "toppra", "copp-py")
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import partial
+from itertools import chain, islice, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ from planner.errors import PlanError, TargetOutOfReach, UsageError
 from planner.inverse_kinematics.stroke_postures import Obstacle
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
+from planner.placement.pieces import Piece
 from planner.portions import (
     SAMPLE_SHARE,
     SMOOTH_SHARE,
@@ -32,6 +34,7 @@ from planner.portions import (
     TimedStroke,
     hop_portions,
     make_ready,
+    pieces_of,
     planned_hops,
     stroke_portions,
     timed_strokes,
@@ -68,8 +71,7 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
     lift_mm = arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
     if lift_mm < arm.pen.clearance_mm:
         raise UsageError(f"a lift of {lift_mm:g} mm is below the arm's pen clearance of {arm.pen.clearance_mm:g} mm")
-    with crew_of(_worth_hiring(workers, drawing_file)) as crew:
-        getting_ready = crew(make_ready, [kit] * workers.count)  # while this process reads
+    with crew_of(_worth_hiring(workers, drawing_file), partial(make_ready, kit)) as crew:
         report("reading", 0, 1)
         drawing = read_drawing(drawing_file)
         svg_to_arm, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
@@ -77,8 +79,6 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
         report("ordering strokes", 0, 1)
         canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
         strokes = order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
-        for _ in getting_ready:
-            pass
         timed, notes = _timed_strokes(crew, kit, strokes, report)
         hops = _hops(crew, kit, timed, lift_mm, report)
     warnings += notes
@@ -145,26 +145,37 @@ def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: 
     """Joint samples of all strokes that can be drawn, and what is to be said of them; those that cannot are left out if
     the user wants so."""
     settings = kit.settings
+    pieces = pieces_of(strokes, settings)
+    results = _results(crew, kit, list(chain.from_iterable(pieces)), report)
     timed: list[TimedStroke] = []
-    done = lost = 0
-    report("drawing motions", 0, len(strokes))
-    for results in crew(timed_strokes, stroke_portions(kit, strokes)):
-        for index, result in enumerate(results, done):
-            if not isinstance(result, Obstacle):
-                timed.append(result)
-            elif settings.skip_unreachable:
-                lost += 1
-            else:
-                nearest = int(np.argmin(np.hypot(*(strokes[index] - result.tip_mm).T)))
-                raise TargetOutOfReach(index, nearest, result.tip_mm, result.reason, result.joint, result.limit)
-        done += len(results)
-        report("drawing motions", done, len(strokes))
+    lost = 0
+    for index, stroke in enumerate(strokes):
+        made = list(islice(results, len(pieces[index])))
+        obstacles = [result for result in made if isinstance(result, Obstacle)]
+        if not obstacles:
+            timed.append(TimedStroke.of([result for result in made if isinstance(result, TimedStroke)]))
+        elif settings.skip_unreachable:
+            lost += 1
+        else:
+            first = obstacles[0]
+            nearest = int(np.argmin(np.hypot(*(stroke - first.tip_mm).T)))
+            raise TargetOutOfReach(index, nearest, first.tip_mm, first.reason, first.joint, first.limit)
     if not timed:
         raise PlanError("nothing of the drawing can be drawn within the joint limits")
     unsettled = sum(not stroke.settled for stroke in timed)
     counted = [(lost, f"left out whole, as method {settings.method} cannot draw them"),
                (unsettled, "timed by the fallback, slower than the least time")]
     return timed, [f"{what}: {count} strokes" for count, what in counted if count]
+
+
+def _results(crew: Crew, kit: Kit, pieces: Sequence[Piece], report: Report) -> Iterator[TimedStroke | Obstacle]:
+    """What became of each piece, as soon as it is known."""
+    done = 0
+    report("drawing motions", 0, len(pieces))
+    for results in crew(timed_strokes, stroke_portions(kit, pieces)):
+        done += len(results)
+        report("drawing motions", done, len(pieces))
+        yield from results
 
 
 def _hops(crew: Crew, kit: Kit, timed: Sequence[TimedStroke], lift_mm: float, report: Report) -> list[Hop]:

@@ -18,7 +18,8 @@ from planner.arms.posture_field import posture_field
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.stroke_postures import Obstacle, exact_postures, joint_paths, postures_at
 from planner.placement.pen_path import smooth_paths
-from planner.settings import PlanSettings
+from planner.placement.pieces import Piece, in_pieces
+from planner.settings import Method, PlanSettings
 from planner.timing.hops import Hop, HopRules, Touch, plan_hops
 from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
@@ -29,7 +30,9 @@ from planner.timing.timing_problem import FRACTIONS, TimingProblem
 SMOOTH_SHARE, SAMPLE_SHARE = 0.5, 0.4
 """Shares of the tolerance: rounded corners, and the straight lines between samples."""
 
-_PORTION_POINTS = 2000
+_PORTION_WORK = 4000.0
+_LEAST_WORK = 10.0
+"""What a stroke of no length costs at least."""
 _PORTION_HOPS = 125
 _TIMING_HALVINGS = 1
 """How often the cells of a path are cut in two before it is timed: jerk switches at cell ends only, and cells as
@@ -50,6 +53,15 @@ class TimedStroke:
     last: Touch
     dwell_samples: int
     settled: bool = True
+
+    @staticmethod
+    def of(pieces: Sequence[TimedStroke]) -> TimedStroke:
+        """One stroke of pieces that each begin at rest where the one before ended."""
+        if len(pieces) == 1:
+            return pieces[0]
+        joints = np.concatenate([pieces[0].joints, *(piece.joints[1:] for piece in pieces[1:])])
+        return TimedStroke(joints, pieces[0].first, pieces[-1].last, pieces[0].dwell_samples,
+                           all(piece.settled for piece in pieces))
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +89,7 @@ def _unpickled(pickled_arm: bytes) -> Arm:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StrokePortion:
-    """Neighbouring strokes (n, 2), arm mm."""
+    """Neighbouring strokes (n, 2), arm mm, or pieces of them."""
 
     kit: Kit
     strokes: Sequence[FloatArray]
@@ -93,14 +105,22 @@ class HopPortion:
     meet: Sequence[Touch | None]
 
 
-def stroke_portions(kit: Kit, strokes: Sequence[FloatArray]) -> Iterator[StrokePortion]:
-    """Strokes cut into portions of bounded size: by the drawing alone, never by who makes them."""
-    first = points = 0
-    for index, stroke in enumerate(strokes):
-        points += len(stroke)
-        if points >= _PORTION_POINTS or index + 1 == len(strokes):
-            yield StrokePortion(kit, strokes[first:index + 1])
-            first, points = index + 1, 0
+def pieces_of(strokes: Sequence[FloatArray], settings: PlanSettings) -> list[list[Piece]]:
+    """What may be timed apart, stroke by stroke. Methods that go from posture to posture need strokes whole."""
+    return list(in_pieces(strokes, SMOOTH_SHARE * settings.tolerance_mm,
+                          whole=settings.method in (Method.DLS, Method.NLP)))
+
+
+def stroke_portions(kit: Kit, pieces: Sequence[Piece]) -> Iterator[StrokePortion]:
+    """Pieces put together to portions of bounded size: by the drawing alone, never by who makes them."""
+    first, work = 0, 0.0
+    for index, piece in enumerate(pieces):
+        if index > first and work + piece.work > _PORTION_WORK:
+            yield StrokePortion(kit, [piece.points_mm for piece in pieces[first:index]])
+            first, work = index, 0.0
+        work += piece.work + _LEAST_WORK
+    if pieces:
+        yield StrokePortion(kit, [piece.points_mm for piece in pieces[first:]])
 
 
 def hop_portions(kit: Kit, rules: HopRules, leave: Sequence[Touch | None], meet: Sequence[Touch | None]
@@ -139,9 +159,6 @@ def planned_hops(portion: HopPortion) -> list[Hop]:
 def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedStroke | Obstacle]:
     paths = smooth_paths(strokes, SMOOTH_SHARE * settings.tolerance_mm)
     splines, obstacles = joint_paths(arm, settings.method, paths, settings.weights)
-    if obstacles and not settings.skip_unreachable:
-        blocked = {obstacle.path: obstacle for obstacle in obstacles}
-        return [blocked.get(index, obstacles[0]) for index in range(len(strokes))]
     if obstacles:
         blocked = {obstacle.path: obstacle for obstacle in obstacles}
         open_ways = [index for index in range(len(strokes)) if index not in blocked]

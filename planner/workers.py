@@ -1,7 +1,7 @@
-"""Work in portions: in this process, in processes beside it, or on a Dask cluster.
+"""Work in portions: in this process and processes beside it, or on a Dask cluster.
 
 Results come in the order of the portions, whoever did them, so that nothing of the outcome depends on the number of
-workers. The doorway to joblib.
+workers. The doorway to joblib, whose processes start without running the main module anew, and to Dask.
 """
 
 from __future__ import annotations
@@ -12,23 +12,32 @@ import os
 import signal
 import threading
 import time
-import warnings
-from collections.abc import Callable, Generator, Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol, TypeVar
 
-from planner.errors import UsageError
+from planner.errors import PlannerError, UsageError
 
 Portion = TypeVar("Portion")
 Result = TypeVar("Result")
 
+THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+"""One thread of linear algebra a process: matrices here are too small to share out."""
 _WATCH_S = 0.5
+_FIRST_ANSWER_S = 10
+_AT_HAND = 2
+"""Portions that each of the others has at a time: one that it works on and one to go on with."""
+_AHEAD = 4
+"""Results a worker that may wait for an earlier one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Workers:
-    """count: processes on this machine, 1 for this process alone; cluster: tcp://HOST:PORT of a Dask scheduler
+    """count: processes on this machine, of which this one is one; cluster: tcp://HOST:PORT of a Dask scheduler
     that does the work instead."""
 
     count: int = 1
@@ -47,42 +56,85 @@ class Crew(Protocol):
     """Those who do the work."""
 
     def __call__(self, work: Callable[[Portion], Result], portions: Iterable[Portion]) -> Iterator[Result]:
-        """The results of all portions in their order. One call at a time: exhaust it before the next."""
+        """The results of all portions in their order."""
         ...
 
 
 @contextmanager
-def crew_of(workers: Workers) -> Iterator[Crew]:
-    """The crew, for as long as it is needed. Errors: UsageError where the cluster cannot be had."""
+def crew_of(workers: Workers, prepare: Callable[[], None] | None = None) -> Iterator[Crew]:
+    """The crew, for as long as it is needed. Each process beside this one calls `prepare` as it starts. Errors:
+    UsageError where the cluster cannot be had."""
     if workers.are_here:
         yield _in_turn
-        return
-    from joblib import Parallel, delayed, parallel_config
-
-    with ExitStack() as until_done:
-        until_done.enter_context(warnings.catch_warnings())
-        warnings.filterwarnings("ignore", ".*have been cancelled", UserWarning)  # whoever gives up half-way knows
-        if workers.cluster is None:
-            # One thread of linear algebra a process; no files in shared memory, which a kill would leave behind.
-            until_done.enter_context(parallel_config(
-                "loky", n_jobs=workers.count, inner_max_num_threads=1, max_nbytes=None, initializer=_settle_in,
-                initargs=(os.getpid(),)))
-        else:
-            client = until_done.enter_context(_cluster(workers.cluster))
-            until_done.enter_context(parallel_config("dask", n_jobs=-1, client=client))
-        parallel = until_done.enter_context(Parallel(return_as="generator", batch_size=1, pre_dispatch="2*n_jobs"))
-
-        def crew(work: Callable[[Portion], Result], portions: Iterable[Portion]) -> Iterator[Result]:
-            with _interrupts_held():
-                results: Generator[Result, None, None] = parallel(delayed(work)(portion) for portion in portions)
-            until_done.callback(results.close)
-            return results
-
-        yield crew
+    elif workers.cluster is None:
+        with _processes(workers.count - 1, prepare) as executor:
+            yield partial(_shared, executor, workers.count - 1, True)
+    else:
+        with _cluster(workers.cluster) as client, client.get_executor() as executor:
+            yield partial(_on_cluster, partial(_shared, executor, sum(client.ncores().values()), False))
 
 
 def _in_turn(work: Callable[[Portion], Result], portions: Iterable[Portion]) -> Iterator[Result]:
     return map(work, portions)
+
+
+def _shared(executor: Executor, n_others: int, joins_in: bool, work: Callable[[Portion], Result],
+            portions: Iterable[Portion]) -> Iterator[Result]:
+    """Portions go to the others as long as these have too few at hand. This process does the next one itself where it
+    joins in, else it waits."""
+    due: deque[Future[Result]] = deque()
+    try:
+        for portion in portions:
+            while len(busy := [future for future in due if not future.done()]) >= _AT_HAND * n_others and not joins_in:
+                wait(busy, return_when=FIRST_COMPLETED)
+            due.append(executor.submit(work, portion) if len(busy) < _AT_HAND * n_others else _done(work, portion))
+            while due and (due[0].done() or len(due) >= _AHEAD * (n_others + 1)):
+                yield due.popleft().result()
+        while due:
+            yield due.popleft().result()
+    finally:
+        for future in due:
+            future.cancel()
+
+
+def _on_cluster(shared: Crew, work: Callable[[Portion], Result], portions: Iterable[Portion]) -> Iterator[Result]:
+    return shared(partial(_one_at_a_time, work), portions)
+
+
+_at_work = threading.Lock()
+
+
+def _one_at_a_time(work: Callable[[Portion], Result], portion: Portion) -> Result:
+    """Threads of one process take turns: they share the models of the arm, and these their buffers."""
+    with _at_work:
+        return work(portion)
+
+
+def _done(work: Callable[[Portion], Result], portion: Portion) -> Future[Result]:
+    """The work, done here and now; an error waits for its turn, as everyone else's do."""
+    future: Future[Result] = Future()
+    try:
+        future.set_result(work(portion))
+    except Exception as error:
+        future.set_exception(error)
+    return future
+
+
+@contextmanager
+def _processes(count: int, prepare: Callable[[], None] | None) -> Iterator[Executor]:
+    """Processes that start at once, and are gone in the end, however it comes."""
+    from joblib.externals.loky import ProcessPoolExecutor
+
+    executor = ProcessPoolExecutor(count, initializer=_settle_in, initargs=(os.getpid(), prepare),
+                                   env=dict.fromkeys(THREAD_VARIABLES, "1"))
+    try:
+        with _interrupts_held():
+            executor.submit(int)  # nothing, but processes start with the first task
+        yield executor
+    except BaseException:
+        executor.shutdown(kill_workers=True)
+        raise
+    executor.shutdown(wait=False)
 
 
 @contextmanager
@@ -103,7 +155,7 @@ def _interrupts_held() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _settle_in(parent: int) -> None:
+def _settle_in(parent: int, prepare: Callable[[], None] | None) -> None:
     """A worker process leaves Ctrl-C to its parent, and ends when the parent is gone, however that ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
@@ -113,6 +165,9 @@ def _settle_in(parent: int) -> None:
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
+    if prepare:
+        with suppress(PlannerError):  # whoever needs what could not be prepared meets the same error
+            prepare()
 
 
 @contextmanager
@@ -124,8 +179,12 @@ def _cluster(address: str) -> Iterator[Any]:
     from distributed import Client
 
     try:
-        client = Client(address, timeout="10s", set_as_default=False)
+        client = Client(address, timeout=_FIRST_ANSWER_S, set_as_default=False)
     except (OSError, ValueError, ImportError) as error:
         raise UsageError(f"no Dask scheduler answers at {address}: {error}") from error
     with client:
+        try:
+            client.wait_for_workers(1, timeout=_FIRST_ANSWER_S)
+        except TimeoutError as error:
+            raise UsageError(f"the Dask scheduler at {address} has no workers") from error
         yield client

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 from math import cos, pi, radians, sin, tan
+from pathlib import Path
 
 import numpy as np
 from hypothesis import strategies as st
@@ -84,3 +85,15 @@ def shapes_made(draw: st.DrawFn) -> Shape:
 
 drawings_made = st.lists(shapes_made(), min_size=1, max_size=4).filter(
     lambda shapes: float(np.ptp(np.concatenate([shape.points for shape in shapes]), axis=0).max()) > 1)
+
+
+def scribbles(file: Path, count: int, points: int) -> Path:
+    """Wavy lines and taps of 20 mm by 20 mm, some thousands of points."""
+    random = np.random.default_rng(4)
+    paths = []
+    for _ in range(count):
+        line = random.uniform(20, 80, 2) + np.cumsum(random.normal(0, 0.4, (points, 2)), axis=0)
+        paths.append('<polyline points="' + " ".join(f"{x:.3f},{y:.3f}" for x, y in line) + '"/>')
+    body = "".join(paths) + "".join(tap(10 * x, 5).element for x in range(1, 9))
+    file.write_text(svg_of([]).replace("</svg>", body + "</svg>"), encoding="utf-8")
+    return file

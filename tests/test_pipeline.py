@@ -20,6 +20,7 @@ from planner.checking.check import check_trajectory
 from planner.drawing.svg import read_drawing
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach, UnknownArm, UsageError
 from planner.pipeline import Plan, plan
+from planner.placement import pieces
 from planner.settings import CanvasKind, Method, PlanSettings
 from planner.trajectory import TRAVELLING, Trajectory, write_trajectory
 from tests.arms.chains import DRAWING_ARMS, load_once
@@ -201,6 +202,17 @@ def test_what_is_out_of_reach_is_named_or_left_out(tmp_path: Path) -> None:
     azimuth = np.degrees(np.arctan2(everything[:, 1], everything[:, 0]))
     assert furthest_mm(everything[np.abs(azimuth) <= 35.0], drawn) <= TOLERANCE_MM + 0.5  # nothing missing in between
     assert result.summary.n_taps == 1
+
+
+def test_a_very_long_stroke_is_drawn_in_pieces_without_lifting(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shapes = [polyline(*((4.0 * k, 8.0 * (k % 2) + k) for k in range(9)))]
+    whole = planned(tmp_path, shapes, PlanSettings(rate_hz=500.0)).trajectory
+    monkeypatch.setattr(pieces, "_WORK", 50)
+    trajectory = planned(tmp_path, shapes, PlanSettings(rate_hz=500.0)).trajectory
+    assert not np.array_equal(trajectory.positions, whole.positions)  # it was cut
+    assert_checked(trajectory, tmp_path)
+    assert_keeps_its_promises(trajectory, shapes)
+    assert np.count_nonzero(np.diff(trajectory.stroke)) == 2
 
 
 def test_the_same_drawing_gives_the_same_bytes(tmp_path: Path) -> None:

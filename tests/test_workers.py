@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from planner import pipeline, portions
@@ -22,26 +21,13 @@ from planner.cli import main
 from planner.cli.plan import _parser
 from planner.errors import ArmFileError, PlannerError, TargetOutOfReach, UsageError
 from planner.pipeline import plan
-from planner.portions import Kit, stroke_portions
+from planner.placement import pieces
 from planner.settings import Method, PlanSettings
 from planner.trajectory import read_trajectory, write_trajectory
 from planner.workers import ALONE, Workers, crew_of
-from tests.arms.chains import load_once
-from tests.drawn_shapes import svg_of, tap
+from tests.drawn_shapes import scribbles, svg_of, tap
 
 ROOT = Path(__file__).resolve().parent.parent
-
-
-def scribbles(file: Path, count: int, points: int) -> Path:
-    """Wavy lines and taps of 20 mm by 20 mm, some thousands of points."""
-    random = np.random.default_rng(4)
-    paths = []
-    for _ in range(count):
-        line = random.uniform(20, 80, 2) + np.cumsum(random.normal(0, 0.4, (points, 2)), axis=0)
-        paths.append('<polyline points="' + " ".join(f"{x:.3f},{y:.3f}" for x, y in line) + '"/>')
-    body = "".join(paths) + "".join(tap(10 * x, 5).element for x in range(1, 9))
-    file.write_text(svg_of([]).replace("</svg>", body + "</svg>"), encoding="utf-8")
-    return file
 
 
 def unheard(stage: str, done: int, total: int) -> None:
@@ -72,16 +58,10 @@ def test_every_error_can_be_sent_from_process_to_process() -> None:
     assert type(copy) is TargetOutOfReach and str(copy) == str(error) and copy.__dict__ == error.__dict__
 
 
-def test_portions_are_cut_by_the_drawing_and_hold_every_stroke_once() -> None:
-    strokes = [np.zeros((n, 2)) for n in (1500, 800, 1, 2500, 700, 3)]
-    cut = list(stroke_portions(Kit.of(load_once("drawing_arm"), PlanSettings()), strokes))
-    assert [len(stroke) for portion in cut for stroke in portion.strokes] == [1500, 800, 1, 2500, 700, 3]
-    assert [len(portion.strokes) for portion in cut] == [2, 2, 2]
-
-
 def test_the_same_bytes_whatever_the_number_of_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline, "_SMALL_BYTES", 0)
-    monkeypatch.setattr(portions, "_PORTION_POINTS", 100)
+    monkeypatch.setattr(portions, "_PORTION_WORK", 150)
+    monkeypatch.setattr(pieces, "_WORK", 100)
     monkeypatch.setattr(portions, "_PORTION_HOPS", 4)
     drawing = scribbles(tmp_path / "scribbles.svg", 8, 60)
     written = []

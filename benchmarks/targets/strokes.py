@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -138,10 +138,10 @@ def _timed(pen: PenPaths, joints: JointPaths, cap: FloatArray, limits: Limits) -
 
 
 def timed_in_portions(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedPaths]:
-    """The same in portions of bounded size."""
-    ends = np.cumsum([len(stroke) for stroke in strokes]) // portions._PORTION_POINTS
-    cuts = [0, *(np.flatnonzero(np.diff(ends)) + 1).tolist(), len(strokes)]
-    return [timed(arm, strokes[first:last], settings) for first, last in pairwise(cuts) if last > first]
+    """The same in the portions and pieces that the planner makes of them."""
+    pieces = chain.from_iterable(portions.pieces_of(strokes, settings))
+    cut = portions.stroke_portions(portions.Kit.of(arm, settings), list(pieces))
+    return [timed(arm, portion.strokes, settings) for portion in cut]
 
 
 def problem_of(joints: JointPaths, limits: Limits, cap: FloatArray) -> TimingProblem:

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 from planner.cli.terminal import print_lines, print_note
 from planner.errors import PlannerError
+from planner.workers import THREAD_VARIABLES
 
 TRACEBACK_VARIABLE = "PLAN_TRACEBACK"
-_THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 EXIT_INTERRUPTED = 130
 EXIT_NO_MEMORY = 2
 EXIT_DEFECT = 70
@@ -22,7 +22,7 @@ EXIT_DEFECT = 70
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; the exit code. Every error ends as one line on standard error."""
-    for variable in _THREAD_VARIABLES:  # before NumPy is loaded: its matrices here are too small to share out
+    for variable in THREAD_VARIABLES:  # before NumPy is loaded
         os.environ.setdefault(variable, "1")
     try:
         try:

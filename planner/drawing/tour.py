@@ -54,7 +54,7 @@ class _Search:
     def __init__(self, start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, norm: Norm) -> None:
         self.n = len(tour)
         self.norm = norm
-        self.nodes = np.stack([np.vstack([entries, start]), np.vstack([exits, start])], axis=1)
+        self.nodes: FloatArray = np.stack([np.vstack([entries, start]), np.vstack([exits, start])], axis=1)
         self.nodes = self.nodes.reshape(2 * self.n + 2, -1)
         self.tour: IntArray = np.concatenate([[2 * self.n], 2 * tour])
         self.position = np.empty(self.n + 1, dtype=np.int64)
@@ -66,8 +66,9 @@ class _Search:
         rows = np.repeat(np.arange(len(self.nodes)), k)
         columns = near.ravel()
         is_other = rows // 2 != columns // 2
-        # Pairs of nodes worth linking.
+        # Pairs of nodes worth linking, and how far apart they are.
         self.a, self.b = rows[is_other], columns[is_other]
+        self.apart = self._length(self.a, self.b)
         self.work = 0
 
     def run(self) -> None:
@@ -76,9 +77,18 @@ class _Search:
             if not n_moves or self.work > _WORK_LIMIT:
                 return
 
+    def _links(self) -> tuple[FloatArray, IntArray, IntArray]:
+        """(2 n + 2,) travel at each node as the tour is now, nothing at the free end; and the pairs of which a move may
+        gain: of the links that it makes, one at least is shorter than one that it breaks there."""
+        link = np.zeros(len(self.nodes))
+        left, entered = self.tour[:-1] ^ 1, self.tour[1:]
+        link[left] = link[entered] = self._length(left, entered)
+        is_worth = self.apart < np.maximum(link[self.a], link[self.b])
+        return link, self.a[is_worth], self.b[is_worth]
+
     def _length(self, one: IntArray, other: IntArray) -> FloatArray:
         """Travel between nodes; nothing where `other` is -1, the free end."""
-        distance = self.norm.distance(self.nodes[one], self.nodes[other])
+        distance: FloatArray = self.norm.distance(self.nodes[one], self.nodes[other])
         distance[other < 0] = 0.0
         return distance
 
@@ -91,16 +101,17 @@ class _Search:
 
     # 2-opt: turn round the piece from `first` to `last`.
 
-    def _two_opt_gain(self, first: IntArray, last: IntArray) -> FloatArray:
+    def _two_opt_gain(self, first: IntArray, last: IntArray, link: FloatArray) -> FloatArray:
         before, after = self.tour[first - 1] ^ 1, self._after(last)
         head, tail = self.tour[first], self.tour[last] ^ 1
-        return (self._length(before, head) + self._length(tail, after)
-                - self._length(before, tail) - self._length(head, after))
+        gain: FloatArray = link[head] + link[tail] - self._length(before, tail) - self._length(head, after)
+        return gain
 
     def _two_opt_round(self) -> int:
-        position_a, position_b = self.position[self.a // 2], self.position[self.b // 2]
-        is_exit_a = self.tour[position_a] != self.a
-        is_exit_b = self.tour[position_b] != self.b
+        link, a, b = self._links()
+        position_a, position_b = self.position[a // 2], self.position[b // 2]
+        is_exit_a = self.tour[position_a] != a
+        is_exit_b = self.tour[position_b] != b
         is_exit_a[position_a == 0] = True
         # Exit linked to a later exit: everything behind the first up to the second turns round.
         exits = is_exit_a & is_exit_b & (position_b > position_a)
@@ -111,7 +122,7 @@ class _Search:
         # The free end: turning the tail round costs one link only.
         first = np.concatenate([first, np.arange(1, self.n + 1)])
         last = np.concatenate([last, np.full(self.n, self.n)])
-        gain = self._two_opt_gain(first, last)
+        gain = self._two_opt_gain(first, last, link)
         chosen = np.flatnonzero(gain > self.least_gain)
         chosen = chosen[np.lexsort((chosen, -gain[chosen]))]
         # Moves are remembered by the nodes at their borders: earlier moves of this round shift positions.
@@ -147,7 +158,8 @@ class _Search:
     # Or-opt: move a short segment between two other neighbours, either way round.
 
     def _or_opt_round(self) -> int:
-        moves = [self._or_opt_candidates(length) for length in range(1, min(_LONGEST_SEGMENT, self.n - 1) + 1)]
+        links = self._links()
+        moves = [self._or_opt_candidates(length, *links) for length in range(1, min(_LONGEST_SEGMENT, self.n - 1) + 1)]
         gain, first, last, gap, turned = (np.concatenate(column) for column in zip(*moves, strict=True))
         chosen = np.flatnonzero(gain > self.least_gain)
         chosen = chosen[np.lexsort((chosen, -gain[chosen]))]
@@ -159,11 +171,12 @@ class _Search:
             n_moves += self._move_segment(*row)
         return n_moves
 
-    def _or_opt_candidates(self, length: int) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray]:
+    def _or_opt_candidates(self, length: int, link: FloatArray, a: IntArray, b: IntArray
+                           ) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray]:
         """Gain, first and last position of the segment, the position after which it goes, and whether turned."""
-        position_a, position_b = self.position[self.a // 2], self.position[self.b // 2]
-        is_entry_a = self.tour[position_a] == self.a
-        is_entry_b = self.tour[position_b] == self.b
+        position_a, position_b = self.position[a // 2], self.position[b // 2]
+        is_entry_a = self.tour[position_a] == a
+        is_entry_b = self.tour[position_b] == b
         # The segment has node a at one of its outer ends.
         first = np.where(is_entry_a, position_a, position_a - length + 1)
         last = first + length - 1
@@ -177,8 +190,8 @@ class _Search:
         before, after = self.tour[first - 1] ^ 1, self._after(last)
         left, right = self.tour[gap] ^ 1, self._after(gap)
         inner, outer = np.where(turned, tail, head), np.where(turned, head, tail)
-        gain = (self._length(before, head) + self._length(tail, after) - self._length(before, after)
-                + self._length(left, right) - self._length(left, inner) - self._length(outer, right))
+        gain = (link[head] + link[tail] + link[left] - self._length(before, after)
+                - self._length(left, inner) - self._length(outer, right))
         return gain, first, last, gap, turned.astype(np.int64)
 
     def _move_segment(self, before: int, head: int, tail: int, after: int, left: int, right: int,

@@ -105,4 +105,4 @@ def _dls_step(arm: Arm) -> CompiledFunction:
     error = target - tip
     scaled = to_cm @ jacobian
     step = scaled.T @ casadi.solve(scaled @ scaled.T + damping * casadi.SX.eye(6), to_cm @ casadi.vertcat(error, turn))
-    return CompiledFunction("dls", [joints, target, damping], [error, tip, step, casadi.norm_2(turn)], block=1)
+    return CompiledFunction("dls", [joints, target, damping], [error, tip, step, casadi.norm_2(turn)], blocks=(1,))

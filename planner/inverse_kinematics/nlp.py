@@ -6,8 +6,8 @@ limits of all joints, driven ones included. Built once for an arm, warm-started 
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
-from typing import Any
 
 import casadi
 import numpy as np
@@ -20,6 +20,7 @@ from planner.inverse_kinematics.result import Solutions
 
 _CENTRING = 1e-3
 _TOLERANCE_MM = 1e-3
+_TOLERANCE_LIMITS = 1e-6
 _MOST_SETTLING = 50
 _ROOM = 5e-3
 """Share of each joint's range kept from its limits, for the splines that join the postures of sparse targets."""
@@ -38,32 +39,59 @@ class NlpSolver:
                      + _CENTRING * casadi.sumsqr((joints - middle) / half))
         problem = {"x": free, "p": before, "f": objective, "g": casadi.vertcat(self.kinematics.task, joints)}
         quiet = {"print_time": False, "error_on_fail": False}
-        self._fast = casadi.nlpsol("sqp", "sqpmethod", problem, {
+        fast = casadi.nlpsol("sqp", "sqpmethod", problem, {
             **quiet, "qpsol": "qrqp", "print_header": False, "print_iteration": False, "print_status": False,
             "tol_pr": 1e-9, "tol_du": 1e-7, "max_iter": 30,
             "qpsol_options": {"print_iter": False, "print_header": False, "print_info": False, "error_on_fail": False}})
-        self._sure = casadi.nlpsol("ip", "ipopt", problem, {
+        sure = casadi.nlpsol("ip", "ipopt", problem, {
             **quiet, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.max_iter": 300, "ipopt.tol": 1e-10})
+        room = _ROOM * (arm.maximum - arm.minimum)
+        self._n_task = self.kinematics.n_task
+        self._lower = np.concatenate((np.zeros(self._n_task), arm.minimum + room))
+        self._upper = np.concatenate((np.zeros(self._n_task), arm.maximum - room))
+        self._allowed = np.repeat((_TOLERANCE_MM, _TOLERANCE_LIMITS), (self._n_task, arm.n_joints))
+        self._solvers = [_Buffered(solver, self._lower, self._upper) for solver in (fast, sure)]
 
     def solve(self, target_mm: FloatArray, before: FloatArray) -> tuple[FloatArray, bool, int, float]:
         """Posture (n_free,) for a tip (3,) near the posture before, whether it converged, iterations, error in mm."""
-        target = self.kinematics.task_target(target_mm[None])[0]
-        room = _ROOM * (self.arm.maximum - self.arm.minimum)
-        bounds = {"lbg": np.concatenate((target, self.arm.minimum + room)),
-                  "ubg": np.concatenate((target, self.arm.maximum - room))}
-        solution, iterations = before, 0
-        for solver in (self._fast, self._sure):
-            found: dict[str, Any] = solver(x0=before, p=before, **bounds)
-            statistics = solver.stats()
-            iterations += int(statistics["iter_count"])
-            solution = np.array(found["x"]).ravel()
-            values = np.array(found["g"]).ravel()
-            miss = values[:len(target)] - target
-            error_mm = float(np.linalg.norm(miss[:3]))
-            outside = float(np.maximum(bounds["lbg"] - values, values - bounds["ubg"])[len(target):].max())
-            if statistics["success"] and np.abs(miss).max() < _TOLERANCE_MM and outside < 1e-6:
-                return solution, True, iterations, error_mm
-        return solution, False, iterations, error_mm
+        self._lower[:3] = self._upper[:3] = target_mm  # the rest of the task, of pointing, has to be zero
+        iterations = 0
+        for solver in self._solvers:
+            success, count = solver(before)
+            iterations += count
+            beyond = np.maximum(self._lower - solver.constraints, solver.constraints - self._upper)
+            converged = success and bool((beyond < self._allowed).all())
+            if converged:
+                break
+        return solver.solution.copy(), converged, iterations, math.hypot(*beyond[:3])
+
+
+class _Buffered:
+    """A solver called through CasADi's raw buffers: its dictionaries would take longer than a warm solution does.
+
+    lower, upper: (n_constraints,), read anew at every call. solution: (n_free,) and constraints: (n_constraints,)
+    are those of the last one.
+    """
+
+    def __init__(self, solver: casadi.Function, lower: FloatArray, upper: FloatArray) -> None:
+        n_free = solver.size1_in("x0")
+        self._before = np.zeros(n_free)
+        self._unbounded = np.full(n_free, np.inf)
+        self._inputs = {"x0": self._before, "p": self._before, "lbx": -self._unbounded, "ubx": self._unbounded,
+                        "lbg": lower, "ubg": upper}
+        self.solution, self.constraints = np.zeros(n_free), np.zeros(len(lower))
+        self._buffer, self._evaluate = solver.buffer()
+        for name, array in self._inputs.items():
+            self._buffer.set_arg(solver.index_in(name), memoryview(array))  # type: ignore[call-arg, arg-type]
+        for name, array in (("x", self.solution), ("g", self.constraints)):
+            self._buffer.set_res(solver.index_out(name), memoryview(array))  # type: ignore[call-arg, arg-type]
+
+    def __call__(self, before: FloatArray) -> tuple[bool, int]:
+        """Whether the solver is content, and its iterations, near a posture (n_free,) and started from it."""
+        self._before[:] = before
+        self._evaluate()
+        statistics = self._buffer.stats()
+        return bool(statistics["success"]), int(statistics["iter_count"])
 
 
 @lru_cache(maxsize=16)

@@ -85,6 +85,15 @@ def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPat
     return paths
 
 
+def expected_cells(polylines: Sequence[FloatArray], tolerance_mm: float) -> list[FloatArray]:
+    """(n,) for each polyline: about how many cells its smooth path has up to each of its points, as far as lone corners
+    tell."""
+    line = _Polylines.of(polylines)
+    spacing = _Spacing.of(line, *line.corner_spacings(tolerance_mm))
+    cells = np.interp(line.arc_mm, spacing.node_mm, spacing.cells)
+    return [along - along[0] for along in np.split(cells, line.first[1:])]
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class _Polylines:
     """Polylines on one axis of arc length, with a gap between each and the next that keeps them apart."""
