@@ -16,7 +16,7 @@ import numpy as np
 from planner.arrays import FloatArray
 from planner.placement.pen_path import expected_cells
 
-_WORK = 3000
+_WORK = 1500
 """What pieces are near to, in cells of their smooth paths. A stroke of up to half as much again stays whole."""
 _WORK_PER_POINT = 0.05
 """A point is less work than a cell, but where points are dense there are many more of them."""
