@@ -3,7 +3,7 @@
 An arm whose first joint turns about the vertical meets a paper point (rho, azimuth) with the posture of
 (rho, 0) turned by the azimuth. So the arm's redundancy has to be decided along one line only, from
 the inner to the outer radius, and the choice is global: a dynamic programme over sampled postures finds
-the branch and the coarse course, an NLP over all radii at once polishes it. The same paper point
+the branch and the coarse course, further ones over its neighbours polish it. The same paper point
 is then always drawn with the same posture, whatever the drawing.
 """
 
@@ -17,7 +17,7 @@ import numpy as np
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.kinematics import Kinematics, kinematics_of
 from planner.arms.posture_cost import PostureCost
-from planner.arms.posture_course import coarse_course, polished_course
+from planner.arms.posture_course import cheapest_course, polished_course, smoothed_course
 from planner.arms.posture_samples import on_ray, sampled_rays, slowest_direction_mm_s, stretched_to_edges
 from planner.arms.projection import project
 from planner.arrays import BoolArray, FloatArray
@@ -27,7 +27,9 @@ from planner.spline import evaluate_at, interpolating
 
 _WEIGHTS = PostureWeights()
 _UPRIGHT_PROBES = 16
-_NODES = 49
+_NODES = 97
+_ROUNDING_MM = 2.0
+"""Corners, where one joint comes to rest and another starts, become bends: the standard deviation of the weights."""
 _DEGREE = 5
 _EDGE_MM = 1.0
 """The field is laid out over sqrt(outer + this - rho): near the stretched arm postures go with that root."""
@@ -110,16 +112,20 @@ def _computed(arm: Arm, weights: PostureWeights) -> PostureField:
                         f" at {arm.workspace.inner_radius_mm:g} mm or more from the base axis")
     quickness = float(np.median(slowest_direction_mm_s(kinematics, np.concatenate(samples))))
     cost = PostureCost(kinematics, weights, quickness, float(radii[-1]))
-    radii, postures = stretched_to_edges(kinematics, *coarse_course(cost, radii, samples))
+    radii, postures = stretched_to_edges(kinematics, *cheapest_course(cost, radii, samples))
     outer = radii[-1] + _EDGE_MM
     nodes = outer - np.linspace(np.sqrt(outer - radii[0]), np.sqrt(_EDGE_MM), _NODES) ** 2
     nodes[0], nodes[-1] = radii[0], radii[-1]
     keep = np.concatenate(([True], np.diff(radii) > 1e-6))
     guess = np.column_stack([np.interp(nodes, radii[keep], column) for column in postures[keep].T])
-    refined, exact = project(kinematics, polished_course(cost, nodes, guess), on_ray(nodes))
+    course, exact = project(kinematics, guess, on_ray(nodes))
+    if exact.all():
+        spacing_mm = (nodes[-1] - nodes[0]) / (_NODES - 1)
+        course = smoothed_course(polished_course(cost, nodes, course), _ROUNDING_MM / spacing_mm)
+        course, exact = project(kinematics, course, on_ray(nodes))
     if not exact.all():
         raise PlanError(f"arm {arm.name}: the posture field did not converge")
-    return PostureField(arm, nodes, refined)
+    return PostureField(arm, nodes, course)
 
 
 def _require_upright(kinematics: Kinematics) -> None:
