@@ -12,9 +12,9 @@ from __future__ import annotations
 import numpy as np
 
 from planner.arms.posture_cost import PostureCost
-from planner.arms.posture_samples import COARSE_STEP_MM, on_ray, usable_postures
+from planner.arms.posture_samples import COARSE_STEP_MM, usable_postures
 from planner.arms.projection import Pins, project
-from planner.arrays import FloatArray
+from planner.arrays import BoolArray, FloatArray
 
 _SPACINGS = (0.4, 0.2, 0.05, 0.0125)
 """Between the values of a joint, in shares of the time that the arm takes for a step between sampled radii."""
@@ -23,23 +23,25 @@ _ROUNDS = 2
 _PROJECTION_STEPS = 8
 
 
-def cheapest_course(cost: PostureCost, radii_mm: FloatArray, samples: list[FloatArray]
-                    ) -> tuple[FloatArray, FloatArray]:
+def cheapest_course(cost: PostureCost, radii_mm: FloatArray, samples: list[FloatArray],
+                    wanted: BoolArray | None = None) -> tuple[FloatArray, FloatArray]:
     """The run of neighbouring radii that reaches furthest with no jump, and in it the cheapest postures.
 
-    radii_mm: (n,) increasing; samples: usable postures (m, n_free) at each radius, some at least at one. Returns radii
-    (k,) and postures (k, n_free).
+    radii_mm: (n,) increasing; samples: usable postures (m, n_free) at each radius, some at least at one; wanted: (n,)
+    the radii that count, where not all do. Returns radii (k,) and postures (k, n_free).
     """
     arm = cost.kinematics.arm
     lengths = np.diff(radii_mm)
     shares = np.concatenate((lengths[:1], lengths[:-1] + lengths[1:], lengths[-1:])) / 2
-    reward = 1e6  # a radius more counts above any cost
+    reward = np.full(len(radii_mm), 1e6)  # a radius more counts above any cost
+    if wanted is not None:
+        reward[wanted] *= 1e3
     costs: list[FloatArray] = []
     came_from: list[FloatArray] = []
     before = np.empty((0, arm.n_joints))
     for index, postures in enumerate(samples):
         joints = arm.complete(postures)
-        own = cost.postures(postures) * shares[index] - reward
+        own = cost.postures(postures) * shares[index] - reward[index]
         back = np.full(len(postures), -1)
         if len(before) and len(postures):
             length = float(lengths[index - 1])
@@ -66,10 +68,11 @@ def cheapest_course(cost: PostureCost, radii_mm: FloatArray, samples: list[Float
     return np.array([radius for radius, _ in chosen]), np.array([posture for _, posture in chosen])
 
 
-def polished_course(cost: PostureCost, radii_mm: FloatArray, course: FloatArray) -> FloatArray:
-    """(n, n_free) the course that costs least among those near a first one, all usable and on the paper like it.
+def polished_course(cost: PostureCost, along_mm: FloatArray, tips_mm: FloatArray, course: FloatArray) -> FloatArray:
+    """(n, n_free) the course that costs least among those near a first one, all usable and exact like it.
 
-    radii_mm: (n,) increasing; course: (n, n_free) with no jump.
+    along_mm: (n,) increasing, the radii or the way along another line; tips_mm: (n, 3) its points; course: (n, n_free)
+    with no jump.
     """
     if cost.kinematics.n_redundant == 0:
         return course
@@ -77,15 +80,24 @@ def polished_course(cost: PostureCost, radii_mm: FloatArray, course: FloatArray)
         spacing_s = share * COARSE_STEP_MM / cost.quickness_mm_s
         for _ in range(_ROUNDS):
             before = course
-            reached, course = cheapest_course(cost, radii_mm, _neighbours(cost, radii_mm, course, spacing_s))
-            if len(reached) < len(radii_mm) or np.array_equal(course, before):
+            reached, course = cheapest_course(cost, along_mm, _neighbours(cost, tips_mm, course, spacing_s))
+            if len(reached) < len(tips_mm) or np.array_equal(course, before):
                 course = before
                 break
     return course
 
 
-def _neighbours(cost: PostureCost, radii_mm: FloatArray, course: FloatArray, spacing_s: float) -> list[FloatArray]:
-    """At each radius the posture of the course first, then usable ones nearby in which one joint (not the first, which
+def course_cost(cost: PostureCost, along_mm: FloatArray, course: FloatArray) -> float:
+    """What a course costs: the mean of its densities over the way."""
+    lengths = np.diff(along_mm)
+    own, steps = cost.postures(course), np.diff(cost.kinematics.arm.complete(course), axis=0)
+    total = 0.5 * (own[1:] + own[:-1]) @ lengths + sum(
+        float(cost.steps(step, length)) * length for step, length in zip(steps, lengths.tolist(), strict=True))
+    return float(total / lengths.sum())
+
+
+def _neighbours(cost: PostureCost, tips_mm: FloatArray, course: FloatArray, spacing_s: float) -> list[FloatArray]:
+    """At each tip the posture of the course first, then usable ones nearby in which one joint (not the first, which
     the azimuth decides) is at a multiple of its spacing: spacing_s times its speed."""
     kinematics, arm = cost.kinematics, cost.kinematics.arm
     matrix, constant = arm.coupling_matrix
@@ -93,16 +105,16 @@ def _neighbours(cost: PostureCost, radii_mm: FloatArray, course: FloatArray, spa
     spacing = spacing_s * arm.max_velocity[1:]
     values = (np.round(joints / spacing)[..., None] + np.arange(-_NEIGHBOURS, _NEIGHBOURS + 1)) * spacing[:, None]
     count = values[0].size
-    at = np.repeat(np.arange(len(radii_mm)), count)
-    rows = np.tile(np.repeat(matrix[1:], values.shape[-1], axis=0), (len(radii_mm), 1))
-    fixed = np.tile(np.repeat(constant[1:], values.shape[-1]), len(radii_mm))
-    found, exact = project(kinematics, course[at], on_ray(radii_mm[at]), iterations=_PROJECTION_STEPS,
+    at = np.repeat(np.arange(len(tips_mm)), count)
+    rows = np.tile(np.repeat(matrix[1:], values.shape[-1], axis=0), (len(tips_mm), 1))
+    fixed = np.tile(np.repeat(constant[1:], values.shape[-1]), len(tips_mm))
+    found, exact = project(kinematics, course[at], tips_mm[at], iterations=_PROJECTION_STEPS,
                            pins=Pins(rows, values.ravel() - fixed))
     away_s = (np.abs(arm.complete(found)[:, 1:] - joints[at]) / arm.max_velocity[1:]).max(axis=1)
     good = exact & (away_s < 3 * _NEIGHBOURS * spacing_s)
     good[good] = usable_postures(kinematics, found[good])
     return [np.concatenate((course[index:index + 1], found[index * count:(index + 1) * count]
-                            [good[index * count:(index + 1) * count]])) for index in range(len(radii_mm))]
+                            [good[index * count:(index + 1) * count]])) for index in range(len(tips_mm))]
 
 
 def smoothed_course(course: FloatArray, deviation: float) -> FloatArray:

@@ -91,7 +91,8 @@ def _add_usable(kinematics: Kinematics, pools: list[FloatArray], rays: IntArray,
         middle = kinematics.free_of((kinematics.arm.minimum + kinematics.arm.maximum) / 2)
         turns = np.round((found - middle) / (2 * np.pi)) * turning
         found = found - 2 * np.pi * turns
-    found[:, 0] = (found[:, 0] + np.pi) % (2 * np.pi) - np.pi
+    turn = (kinematics.arm.minimum[0] + kinematics.arm.maximum[0]) / 2 - np.pi
+    found[:, 0] = (found[:, 0] - turn) % (2 * np.pi) + turn
     usable = usable_postures(kinematics, found)
     for ray in np.unique(rays[usable]).tolist():
         pools[ray] = np.concatenate((pools[ray], found[usable & (rays == ray)]))

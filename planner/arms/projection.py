@@ -34,8 +34,9 @@ def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *
             pins: Pins | None = None) -> tuple[FloatArray, BoolArray]:
     """For each target the posture closest to its reference, measured in joint time, and whether it is exact.
 
-    reference: (n, n_free); tip_mm: (n, 3); pins: what postures have to meet beside their targets. Solves `min |(q - r) / speed|` subject to `task(q) = target` by
-    linearising the task about the latest q (Gauss-Newton on the constraint):
+    reference: (n, n_free); tip_mm: (n, 3); pins: what postures have to meet beside their targets.
+    Solves `min |(q - r) / speed|` subject to `task(q) = target` by linearising the task about the latest q
+    (Gauss-Newton on the constraint):
     `q <- r + S^2 J^T (J S^2 J^T)^-1 (target - task(q) + J (q - r))`, S = diag(speed).
     Depends on target and reference alone, and smoothly, so smooth input gives a smooth joint path.
     """
