@@ -1,4 +1,4 @@
-"""An arm that needs two branches of postures for its paper: forwards near the base, folded over backwards far from it."""
+"""An arm that needs two branches for its paper: forwards near the base, folded over backwards far from it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from planner.cli import main
 from planner.trajectory import TRAVELLING, read_trajectory
 
 LIMITS = {"q1": (-270.0, 90.0), "q2": (40.0, 178.0), "q3": (-150.0, 60.0), "q5": (-300.0, 60.0)}
-TRIANGLE = '<path d="M5 5 L110 85 L215 5 Z" fill="none" stroke="black"/><path d="M110 5 V85" fill="none" stroke="black"/>'
+TRIANGLE = '<g fill="none" stroke="black"><path d="M5 5 L110 85 L215 5 Z"/><path d="M110 5 V85"/></g>'
 
 
 @pytest.fixture(scope="module")

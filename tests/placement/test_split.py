@@ -74,7 +74,8 @@ def test_a_closed_stroke_begins_where_it_is_cut() -> None:
 
 
 def test_what_need_not_or_cannot_be_split_stays_as_it_is() -> None:
-    inside, tap, beyond = np.array([[0.0, 0.0], [9.0, 0.0]]), np.array([[0.0, 0.0]]), np.array([[0.0, 0.0], [50.0, 0.0]])
+    inside, tap = np.array([[0.0, 0.0], [9.0, 0.0]]), np.array([[0.0, 0.0]])
+    beyond = np.array([[0.0, 0.0], [50.0, 0.0]])
     pieces, n_split, n_more = split_strokes([inside, tap, beyond], SHEETS)
     assert pieces[0] is inside and pieces[1] is tap and pieces[2] is beyond
     assert (n_split, n_more) == (0, 0)
