@@ -62,8 +62,8 @@ def _may_be_raised(kinematics: Kinematics, free: FloatArray, joints: FloatArray)
 
     def has_room(lifts: FloatArray, rows: BoolArray, times: float) -> BoolArray:
         raised = joints[rows] + times * arm.pen.lift_mm * (lifts @ matrix.T)
-        room: BoolArray = ((raised >= arm.minimum) & (raised <= arm.maximum)).all(axis=1)
-        return room
+        kept: BoolArray = np.all((raised >= arm.minimum) & (raised <= arm.maximum), axis=1)
+        return kept
 
     _, jacobian = kinematics.task_and_jacobian(free)
     lifts = np.linalg.pinv(jacobian * joint_scale(kinematics))[:, :, 2] * joint_scale(kinematics)
