@@ -20,7 +20,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks.targets import copp_socp, postures, scale, smooth, speed, whole
+from benchmarks.targets import copp_socp, postures, redundancy, scale, smooth, speed, whole
 from benchmarks.targets.row import Row, markdown
 from benchmarks.targets.strokes import drawings
 from planner.errors import PlannerError
@@ -35,6 +35,7 @@ MEASURES: dict[str, Measure] = {
     "copp": lambda _, __, settings: copp_socp.against_copp(settings),
     "stopping": lambda folder, _, settings: whole.limits_and_stopping(folder, settings),
     "dls": lambda _, drawing, settings: postures.against_dls(drawing, settings),
+    "redundancy": lambda _, drawing, settings: redundancy.against_brute_force(drawing, settings),
     "limits": lambda _, drawing, settings: postures.limits_of_narrow_arms(drawing, settings),
     "phases": lambda folder, _, settings: whole.phases_and_order(folder, settings),
     "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),

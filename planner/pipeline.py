@@ -14,7 +14,7 @@ from planner.affine import compose, rotation
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arms.canvas import canvas_of
-from planner.arms.posture_field import posture_field
+from planner.arms.posture_field import PostureField, posture_sheets
 from planner.arms.travel_embedding import travel_embedding
 from planner.arrays import BoolArray, FloatArray
 from planner.drawing.drawing import Drawing
@@ -27,6 +27,7 @@ from planner.inverse_kinematics.stroke_postures import Obstacle
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
 from planner.placement.pieces import Piece
+from planner.placement.split import split_strokes
 from planner.portions import (
     SAMPLE_SHARE,
     SMOOTH_SHARE,
@@ -39,7 +40,7 @@ from planner.portions import (
     stroke_portions,
     timed_strokes,
 )
-from planner.settings import PlanSettings
+from planner.settings import Method, PlanSettings
 from planner.summary import PhaseTimes, PlanSummary
 from planner.timing.hops import Hop, HopRules
 from planner.timing.limits import Limits
@@ -118,23 +119,24 @@ def _strokes(drawing: Drawing, svg_to_arm: FloatArray, arm: Arm, settings: PlanS
         warnings.append(f"not drawn as in the SVG: {counts}")
     strokes = flatten_all(drawing.outlines, svg_to_arm, _FLATTEN_SHARE * settings.tolerance_mm)
     strokes = join_strokes(strokes, _JOIN_SHARE * settings.tolerance_mm)
+    sheets = posture_sheets(arm, settings.weights)
     if settings.skip_unreachable:
-        strokes, lost_mm, lost_whole = clip_strokes(strokes, _reachable(arm))
+        strokes, lost_mm, lost_whole = clip_strokes(strokes, _in_reach(sheets))
         if lost_mm or lost_whole:
             warnings.append(f"out of reach and left out: {lost_mm:.1f} mm of line; {lost_whole} strokes or taps whole")
         if not strokes:
             raise PlanError("nothing of the drawing is within reach")
+    if len(sheets) > 1 and settings.method is Method.PATH:
+        strokes, n_split, n_more = split_strokes(strokes, [sheet.reaches for sheet in sheets])
+        if n_split:
+            warnings.append(f"split, as no one branch of postures reaches all of each: {n_split} strokes,"
+                            f" with {n_more} more pen lifts")
     return strokes, warnings
 
 
-def _reachable(arm: Arm) -> Callable[[FloatArray], BoolArray]:
-    field = posture_field(arm)
-
+def _in_reach(sheets: Sequence[PostureField]) -> Callable[[FloatArray], BoolArray]:
     def reachable(points_mm: FloatArray) -> BoolArray:
-        radius = np.hypot(*points_mm.T)
-        inside = (radius >= field.radii_mm[0]) & (radius <= field.radii_mm[-1])
-        _, good = field.postures_at(np.column_stack((points_mm, np.zeros(len(points_mm)))))
-        reached: BoolArray = inside & good
+        reached: BoolArray = np.any([sheet.reaches(points_mm) for sheet in sheets], axis=0)
         return reached
 
     return reachable

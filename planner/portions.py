@@ -20,6 +20,7 @@ from planner.inverse_kinematics.stroke_postures import Obstacle, exact_postures,
 from planner.placement.pen_path import smooth_paths
 from planner.placement.pieces import Piece, in_pieces
 from planner.settings import Method, PlanSettings
+from planner.timing.branch_change import keeps_branch, plan_branch_change
 from planner.timing.hops import Hop, HopRules, Touch, plan_hops
 from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
@@ -152,8 +153,11 @@ def timed_strokes(portion: StrokePortion) -> list[TimedStroke | Obstacle]:
 
 def planned_hops(portion: HopPortion) -> list[Hop]:
     """The hops of a portion."""
-    arm = portion.kit.arm
-    return plan_hops(kinematics_of(arm), Limits.of(arm), portion.rules, portion.leave, portion.meet)
+    kinematics, limits = kinematics_of(portion.kit.arm), Limits.of(portion.kit.arm)
+    hops = plan_hops(kinematics, limits, portion.rules, portion.leave, portion.meet)
+    return [plan_branch_change(kinematics, limits, portion.rules, leave, meet)
+            if leave and meet and not keeps_branch(kinematics, hop, limits, portion.rules, meet) else hop
+            for hop, leave, meet in zip(hops, portion.leave, portion.meet, strict=True)]
 
 
 def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedStroke | Obstacle]:

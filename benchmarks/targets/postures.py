@@ -17,7 +17,7 @@ from planner.arrays import FloatArray
 from planner.errors import PlannerError
 from planner.settings import Method, PlanSettings
 
-_LONGER_THAN_MM = 12.0
+LONGER_THAN_MM = 12.0
 _HYSTERESIS_DEG = 0.1
 """A joint reverses where it turns back by more than this, degrees or mm: less is lost in any servo's dead band."""
 _FRACTIONS = np.array([0.0, 0.5])
@@ -34,11 +34,11 @@ class Figures:
 
 def against_dls(drawing: Path, settings: PlanSettings) -> list[Row]:
     arm = load_arm(settings.arm)
-    strokes = lines(placed_strokes(drawing, arm, settings), _LONGER_THAN_MM)
+    strokes = lines(placed_strokes(drawing, arm, settings), LONGER_THAN_MM)
     each = [replace(settings, method=method) for method in (settings.method, Method.DLS)]
     path, dls = (figures(arm, strokes, one) for one in each)
     path_s, dls_s = (float(timed(arm, strokes, one).time_s.sum()) for one in each)
-    where = f"postures against sequential DLS, {len(strokes)} strokes of {drawing.stem} over {_LONGER_THAN_MM:g} mm: "
+    where = f"postures against sequential DLS, {len(strokes)} strokes of {drawing.stem} over {LONGER_THAN_MM:g} mm: "
     time, sensitivity = path_s / dls_s, path.sensitivity_mm_rad / dls.sensitivity_mm_rad
     reversals = path.reversals / max(dls.reversals, 1)
     return [

@@ -118,7 +118,7 @@ def followed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
              ) -> tuple[PenPaths, JointPaths, list[Obstacle]]:
     """Pen and joint paths of polylines, and those that cannot be followed, before timing."""
     pen = smooth_paths(strokes, portions.SMOOTH_SHARE * settings.tolerance_mm)
-    return pen, *joint_paths(arm, settings.method, pen)
+    return pen, *joint_paths(arm, settings.method, pen, settings.weights)
 
 
 def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> TimedPaths:

@@ -6,6 +6,7 @@ the bottom: arm x = far side - Y, arm y = left side - X.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -14,7 +15,7 @@ import numpy as np
 
 from planner.arms.arm import Arm
 from planner.arms.kinematics import kinematics_of
-from planner.arms.posture_field import PostureField, posture_field, within_limits
+from planner.arms.posture_field import PostureField, posture_sheets, within_limits
 from planner.arms.projection import project
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import PlanError
@@ -87,25 +88,26 @@ def geometric_reach_mm(arm: Arm) -> float:
     joint limits aside. For the drawing arm sqrt((L2+L3+L4)^2 - (L5-L1)^2): minus, where the documents
     print plus."""
     kinematics = kinematics_of(arm)
-    field = posture_field(arm)
+    sheets = posture_sheets(arm)
+    outermost = max(sheets, key=lambda sheet: sheet.radii_mm[-1])
     solver = casadi.nlpsol("reach", "ipopt", {
         "x": kinematics.free, "f": -(kinematics.tip[0] / 100), "g": kinematics.task[1:]},
         {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False})
-    solution = solver(x0=field.postures[-1], lbg=0, ubg=0)
-    return max(float(-solution["f"]) * 100, float(field.radii_mm[-1]))
+    solution = solver(x0=outermost.postures[-1], lbg=0, ubg=0)
+    return max(float(-solution["f"]) * 100, float(outermost.radii_mm[-1]))
 
 
 @lru_cache(maxsize=16)
 def usable_canvas(arm: Arm, lift_mm: float) -> Canvas:
     """The largest axis-aligned rectangle where the pen gets to the paper and to the lift height
     with all joints within limits and clear of singularities, found on a grid and then grown."""
-    field = posture_field(arm)
-    sector = _Sector.of(field, lift_mm)
-    outer = float(field.radii_mm[-1])
+    sheets = posture_sheets(arm)
+    sectors = [_Sector.of(sheet, lift_mm) for sheet in sheets]
+    outer = max(float(sheet.radii_mm[-1]) for sheet in sheets)
     step = outer / _GRID_CELLS
     x = np.arange(0.0, outer + step, step)
     y = np.arange(-outer, outer + step, step)
-    inside = sector.contains(np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1))
+    inside = _in_any(sectors, np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1))
     found = _largest_rectangle(inside)
     if found is None:
         raise PlanError(f"arm {arm.name} has no usable canvas: nowhere is the paper reached pen down and pen up"
@@ -118,7 +120,7 @@ def usable_canvas(arm: Arm, lift_mm: float) -> Canvas:
         for side in range(4):
             trial = sides.copy()
             trial[side] += grow[side]
-            if sector.contains(_border(trial)).all():
+            if _in_any(sectors, _border(trial)).all():
                 sides, moved = trial, True
         if not moved:
             grow /= 2
@@ -131,7 +133,8 @@ def canvas_of(arm: Arm, kind: CanvasKind, lift_mm: float) -> Canvas:
     """The canvas of that kind. Errors: PlanError where there is none."""
     if kind is CanvasKind.USABLE:
         return usable_canvas(arm, lift_mm)
-    r_max, r_min = geometric_reach_mm(arm), max(arm.workspace.inner_radius_mm, float(posture_field(arm).radii_mm[0]))
+    innermost = min(float(sheet.radii_mm[0]) for sheet in posture_sheets(arm))
+    r_max, r_min = geometric_reach_mm(arm), max(arm.workspace.inner_radius_mm, innermost)
     return (documented_canvas if kind is CanvasKind.DOCUMENTED else optimal_canvas)(r_max, r_min)
 
 
@@ -164,6 +167,11 @@ class _Sector:
         for node in (after - 1, after):  # both neighbours have to agree
             inside &= (azimuth >= self.from_rad[node]) & (azimuth <= self.to_rad[node])
         return inside
+
+
+def _in_any(sectors: Sequence[_Sector], points_mm: FloatArray) -> BoolArray:
+    inside: BoolArray = np.any([sector.contains(points_mm) for sector in sectors], axis=0)
+    return inside
 
 
 def _border(sides: FloatArray) -> FloatArray:

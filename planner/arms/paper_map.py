@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arms.arm import Arm
-from planner.arms.posture_field import posture_field
+from planner.arms.posture_field import posture_sheets
 from planner.arms.sensitivity import sideways_error
 from planner.arms.singularity import manipulability
 from planner.arrays import FloatArray
@@ -32,11 +32,17 @@ class PaperMap:
 
 def paper_map(arm: Arm) -> PaperMap:
     """The map of an arm. Errors: PlanError where the arm cannot draw."""
-    field = posture_field(arm)
-    radius, azimuth = np.meshgrid(np.linspace(field.radii_mm[0], field.radii_mm[-1], _RADII),
+    sheets = posture_sheets(arm)
+    reach_mm = min(sheet.radii_mm[0] for sheet in sheets), max(sheet.radii_mm[-1] for sheet in sheets)
+    radius, azimuth = np.meshgrid(np.linspace(*reach_mm, _RADII),
                                   np.linspace(-np.pi / 2, np.pi / 2, _AZIMUTHS), indexing="ij")
     x, y = radius * np.cos(azimuth), radius * np.sin(azimuth)
-    free, kept = field.postures_at(np.column_stack((x.ravel(), y.ravel(), np.zeros(x.size))))
+    tips = np.column_stack((x.ravel(), y.ravel(), np.zeros(x.size)))
+    free = np.zeros((len(tips), len(arm.free_joints)))
+    kept = np.zeros(len(tips), dtype=np.bool_)
+    for sheet in sheets:
+        rest = np.flatnonzero(~kept)
+        free[rest], kept[rest] = sheet.postures_at(tips[rest])
     joints = arm.complete(free)
     figures = (np.where(kept, figure(arm, joints), np.nan).reshape(x.shape)
                for figure in (manipulability, sideways_error))

@@ -2,8 +2,8 @@
 
 With d_j = |dq_j / d rho| / speed_j, in units of the arm's own quickness, the cost density is
 
-    time        the square of a smooth maximum of the d_j: the joint that has to hurry most decides
-    reversals   the sum of the d_j, which leaves as many joints standing still as possible
+    time        the square of the largest d_j: the joint that has to hurry most decides
+    reversals   the sum of d_j to a power below one: how often joints turn back by more than their play, see below
     sensitivity the mean square of the tip's sideways error for a degree (or millimetre) of error of each joint
     limits      the mean square distance of the joints from the middle of their ranges
 """
@@ -22,13 +22,14 @@ from planner.arms.kinematics import Kinematics
 from planner.arrays import FloatArray
 from planner.settings import PostureWeights
 
-_SENSITIVITY, _REVERSALS, _LIMITS = 20.0, 10.0, 1.0
+_SENSITIVITY, _REVERSALS, _LIMITS = 20.0, 4.0, 0.5
 """Against 1 for time: with these, equal weights improve all three figures of the drawing arm against damped least
-squares (benchmarks hold the trade-off)."""
+squares (docs/postures.md holds the trade-off)."""
 
-_MAXIMUM_POWER = 8
-_STILL = 0.03
-"""Slopes below this count as standing still: the corner of the absolute value is rounded there."""
+_TURNS_POWER = 0.7
+"""A drawing comes nearer and goes away again far more often by a little than by much, and a joint with slope d turns
+that into movements of d times the size. The number of those that are larger than the joint's play grows more slowly
+than d, so one joint that stands still saves more than two that move half as much."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +46,7 @@ class PostureCost:
     def _arm(self) -> Arm:
         return self.kinematics.arm
 
-    def posture_symbol(self) -> casadi.SX:
+    def _posture_symbol(self) -> casadi.SX:
         """Cost density of the posture itself, in terms of the kinematics' free joints."""
         arm, joints = self._arm, self.kinematics.joints
         spread = (joints - (arm.maximum + arm.minimum) / 2) / ((arm.maximum - arm.minimum) / 2)
@@ -58,23 +59,15 @@ class PostureCost:
 
     @cached_property
     def _posture(self) -> CompiledFunction:
-        return CompiledFunction("posture_cost", [self.kinematics.free], [self.posture_symbol()])
+        return CompiledFunction("posture_cost", [self.kinematics.free], [self._posture_symbol()])
 
     def postures(self, free: FloatArray) -> FloatArray:
         """(n,) cost densities of postures (n, n_free)."""
         return self._posture(free)[0][:, 0]
 
-    def steps_symbol(self, steps: casadi.SX, lengths_mm: FloatArray) -> casadi.SX:
-        """Cost densities (1, n) of joint steps (n_joints, n) over radial lengths (n,)."""
-        scale = casadi.DM(self.quickness_mm_s / np.outer(self._arm.max_velocity, lengths_mm))
-        squared = (steps * scale) ** 2
-        fastest = (casadi.sum1(squared ** (_MAXIMUM_POWER // 2)) + 1e-6) ** (2 / _MAXIMUM_POWER)
-        return (self.weights.time * fastest
-                + self.weights.reversals * _REVERSALS * casadi.sum1(casadi.sqrt(squared + _STILL ** 2)))
-
     def steps(self, steps: FloatArray, length_mm: float) -> FloatArray:
         """(...) cost densities of joint steps (..., n_joints) over a radial length."""
         slope = np.abs(steps) * (self.quickness_mm_s / length_mm / self._arm.max_velocity)
         cost: FloatArray = (self.weights.time * slope.max(axis=-1) ** 2
-                            + self.weights.reversals * _REVERSALS * slope.sum(axis=-1))
+                            + self.weights.reversals * _REVERSALS * (slope ** _TURNS_POWER).sum(axis=-1))
         return cost

@@ -1,40 +1,53 @@
-"""The course of postures from the inner to the outer radius: a dynamic programme over samples finds it, an NLP over
-all radii at once polishes it."""
+"""The course of postures from the inner to the outer radius: a dynamic programme over samples of all postures finds
+it, dynamic programmes over ever closer neighbours polish it.
+
+The cost of a course has a corner wherever a joint stands still, and the best courses consist of corners: each stretch
+of radii has its resting joint. A solver that follows derivatives needs the corners rounded, and then stops at the first
+course where rounding leaves nothing to gain. So the neighbours are postures in which one joint has one of a few values
+that are the same at all radii: a joint can rest over any stretch, exactly.
+"""
 
 from __future__ import annotations
 
-import casadi
 import numpy as np
 
 from planner.arms.posture_cost import PostureCost
-from planner.arms.posture_samples import COARSE_STEP_MM, LIMIT_MARGIN, on_ray
-from planner.arms.projection import joint_scale
-from planner.arrays import FloatArray
+from planner.arms.posture_samples import COARSE_STEP_MM, usable_postures
+from planner.arms.projection import Pins, project
+from planner.arrays import BoolArray, FloatArray
 
-_BEND = 0.02
-"""Cost of a change of slope: keeps the course smooth where the other terms would leave it corners."""
+_SPACINGS = (0.4, 0.2, 0.05, 0.0125)
+"""Between the values of a joint, in shares of the time that the arm takes for a step between sampled radii."""
+_NEIGHBOURS = 3
+_ROUNDS = 2
+_PROJECTION_STEPS = 8
 
 
-def coarse_course(cost: PostureCost, radii_mm: FloatArray, samples: list[FloatArray]
-                  ) -> tuple[FloatArray, FloatArray]:
+def cheapest_course(cost: PostureCost, radii_mm: FloatArray, samples: list[FloatArray],
+                    wanted: BoolArray | None = None) -> tuple[FloatArray, FloatArray]:
     """The run of neighbouring radii that reaches furthest with no jump, and in it the cheapest postures.
 
-    samples: usable postures (n, n_free) at each radius, some at least at one. Returns radii (k,) and postures
-    (k, n_free).
+    radii_mm: (n,) increasing; samples: usable postures (m, n_free) at each radius, some at least at one; wanted: (n,)
+    the radii that count, where not all do. Returns radii (k,) and postures (k, n_free).
     """
     arm = cost.kinematics.arm
-    longest_step_s = COARSE_STEP_MM / (0.25 * arm.workspace.min_tip_speed_mm_s)
-    reward = 1e6  # a radius more counts above any cost
+    lengths = np.diff(radii_mm)
+    shares = np.concatenate((lengths[:1], lengths[:-1] + lengths[1:], lengths[-1:])) / 2
+    reward = np.full(len(radii_mm), 1e6)  # a radius more counts above any cost
+    if wanted is not None:
+        reward[wanted] *= 1e3
     costs: list[FloatArray] = []
     came_from: list[FloatArray] = []
     before = np.empty((0, arm.n_joints))
-    for postures in samples:
+    for index, postures in enumerate(samples):
         joints = arm.complete(postures)
-        own = cost.postures(postures) - reward
+        own = cost.postures(postures) * shares[index] - reward[index]
         back = np.full(len(postures), -1)
         if len(before) and len(postures):
+            length = float(lengths[index - 1])
             steps = joints[:, None] - before[None]
-            through = costs[-1] + cost.steps(steps, COARSE_STEP_MM)
+            through = costs[-1] + cost.steps(steps, length) * length
+            longest_step_s = length / (0.25 * arm.workspace.min_tip_speed_mm_s)
             through[(np.abs(steps) / arm.max_velocity).max(axis=2) > longest_step_s] = np.inf
             best = through.argmin(axis=1)
             cheapest = through[np.arange(len(postures)), best]
@@ -55,33 +68,58 @@ def coarse_course(cost: PostureCost, radii_mm: FloatArray, samples: list[FloatAr
     return np.array([radius for radius, _ in chosen]), np.array([posture for _, posture in chosen])
 
 
-def polished_course(cost: PostureCost, nodes_mm: FloatArray, guess: FloatArray) -> FloatArray:
-    """(n, n_free) the course that costs least with all postures exactly on the paper and within limits.
+def polished_course(cost: PostureCost, along_mm: FloatArray, tips_mm: FloatArray, course: FloatArray) -> FloatArray:
+    """(n, n_free) the course that costs least among those near a first one, all usable and exact like it.
 
-    nodes_mm: (n,) increasing radii; guess: (n, n_free). Where the solver runs out of iterations its last iterate is
-    returned, which is near the paper but not on it.
+    along_mm: (n,) increasing, the radii or the way along another line; tips_mm: (n, 3) its points; course: (n, n_free)
+    with no jump.
     """
+    if cost.kinematics.n_redundant == 0:
+        return course
+    for share in _SPACINGS:
+        spacing_s = share * COARSE_STEP_MM / cost.quickness_mm_s
+        for _ in range(_ROUNDS):
+            before = course
+            reached, course = cheapest_course(cost, along_mm, _neighbours(cost, tips_mm, course, spacing_s))
+            if len(reached) < len(tips_mm) or np.array_equal(course, before):
+                course = before
+                break
+    return course
+
+
+def course_cost(cost: PostureCost, along_mm: FloatArray, course: FloatArray) -> float:
+    """What a course costs: the mean of its densities over the way."""
+    lengths = np.diff(along_mm)
+    own, steps = cost.postures(course), np.diff(cost.kinematics.arm.complete(course), axis=0)
+    total = 0.5 * (own[1:] + own[:-1]) @ lengths + sum(
+        float(cost.steps(step, length)) * length for step, length in zip(steps, lengths.tolist(), strict=True))
+    return float(total / lengths.sum())
+
+
+def _neighbours(cost: PostureCost, tips_mm: FloatArray, course: FloatArray, spacing_s: float) -> list[FloatArray]:
+    """At each tip the posture of the course first, then usable ones nearby in which one joint (not the first, which
+    the azimuth decides) is at a multiple of its spacing: spacing_s times its speed."""
     kinematics, arm = cost.kinematics, cost.kinematics.arm
-    count, lengths = len(nodes_mm), np.diff(nodes_mm)
-    per_posture = casadi.Function("posture", [kinematics.free], [
-        kinematics.task, kinematics.joints[1:], cost.posture_symbol()]).map(count)
-    q = casadi.MX.sym("q", kinematics.n_free, count)
-    task, others, density = per_posture(q)
-    steps = casadi.SX.sym("steps", arm.n_joints, count - 1)
-    per_step = casadi.Function("steps", [steps], [cost.steps_symbol(steps, lengths)])
-    matrix, _ = arm.coupling_matrix
-    moved = casadi.DM(matrix) @ (q[:, 1:] - q[:, :-1])
-    slope = (q[:, 1:] - q[:, :-1]) * casadi.DM(cost.quickness_mm_s / np.outer(joint_scale(kinematics), lengths))
-    share = np.concatenate(([lengths[0]], lengths[:-1] + lengths[1:], [lengths[-1]])) / 2
-    span = float(nodes_mm[-1] - nodes_mm[0])
-    objective = (casadi.dot(density.T, casadi.DM(share)) + casadi.dot(per_step(moved).T, casadi.DM(lengths))) / span
-    objective += _BEND * count * casadi.sumsqr(slope[:, 1:] - slope[:, :-1])
-    solver = casadi.nlpsol("course", "ipopt", {
-        "x": casadi.vec(q), "f": objective, "g": casadi.vertcat(casadi.vec(task), casadi.vec(others))},
-        {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False, "ipopt.max_iter": 150})
-    target = kinematics.task_target(on_ray(nodes_mm)).ravel()
-    room = (LIMIT_MARGIN * (arm.maximum - arm.minimum))[1:]
-    low, high = np.tile(arm.minimum[1:] + room, count), np.tile(arm.maximum[1:] - room, count)
-    solution = solver(x0=guess.ravel(), lbg=np.concatenate((target, low)), ubg=np.concatenate((target, high)))
-    course = np.array(solution["x"]).reshape(count, -1)
-    return course if np.isfinite(course).all() else guess
+    matrix, constant = arm.coupling_matrix
+    joints = arm.complete(course)[:, 1:]
+    spacing = spacing_s * arm.max_velocity[1:]
+    values = (np.round(joints / spacing)[..., None] + np.arange(-_NEIGHBOURS, _NEIGHBOURS + 1)) * spacing[:, None]
+    count = values[0].size
+    at = np.repeat(np.arange(len(tips_mm)), count)
+    rows = np.tile(np.repeat(matrix[1:], values.shape[-1], axis=0), (len(tips_mm), 1))
+    fixed = np.tile(np.repeat(constant[1:], values.shape[-1]), len(tips_mm))
+    found, exact = project(kinematics, course[at], tips_mm[at], iterations=_PROJECTION_STEPS,
+                           pins=Pins(rows, values.ravel() - fixed))
+    away_s = (np.abs(arm.complete(found)[:, 1:] - joints[at]) / arm.max_velocity[1:]).max(axis=1)
+    good = exact & (away_s < 3 * _NEIGHBOURS * spacing_s)
+    good[good] = usable_postures(kinematics, found[good])
+    return [np.concatenate((course[index:index + 1], found[index * count:(index + 1) * count]
+                            [good[index * count:(index + 1) * count]])) for index in range(len(tips_mm))]
+
+
+def smoothed_course(course: FloatArray, deviation: float) -> FloatArray:
+    """(n, n_free) running means with binomial weights of that standard deviation, in nodes: they round the corners.
+    The ends stay, a joint at rest stays at rest, and none leaves the range that it had."""
+    for _ in range(max(round(2 * deviation ** 2), 1)):  # each pass has variance 1/2
+        course = np.concatenate((course[:1], (course[:-2] + 2 * course[1:-1] + course[2:]) / 4, course[-1:]))
+    return course

@@ -3,12 +3,13 @@
 An arm whose first joint turns about the vertical meets a paper point (rho, azimuth) with the posture of
 (rho, 0) turned by the azimuth. So the arm's redundancy has to be decided along one line only, from
 the inner to the outer radius, and the choice is global: a dynamic programme over sampled postures finds
-the branch and the coarse course, an NLP over all radii at once polishes it. The same paper point
+the branch and the coarse course, further ones over its neighbours polish it. The same paper point
 is then always drawn with the same posture, whatever the drawing.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -17,17 +18,27 @@ import numpy as np
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.kinematics import Kinematics, kinematics_of
 from planner.arms.posture_cost import PostureCost
-from planner.arms.posture_course import coarse_course, polished_course
-from planner.arms.posture_samples import on_ray, sampled_rays, slowest_direction_mm_s, stretched_to_edges
+from planner.arms.posture_course import cheapest_course, polished_course, smoothed_course
+from planner.arms.posture_samples import (
+    COARSE_STEP_MM,
+    on_ray,
+    sampled_rays,
+    slowest_direction_mm_s,
+    stretched_to_edges,
+)
 from planner.arms.projection import project
-from planner.arrays import BoolArray, FloatArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.errors import ArmFileError, PlanError
 from planner.settings import PostureWeights
 from planner.spline import evaluate_at, interpolating
 
 _WEIGHTS = PostureWeights()
 _UPRIGHT_PROBES = 16
-_NODES = 49
+_FEWEST_RADII = 2
+"""Sampled radii that a further sheet has to add."""
+_NODES = 97
+_ROUNDING_MM = 2.0
+"""Corners, where one joint comes to rest and another starts, become bends: the standard deviation of the weights."""
 _DEGREE = 5
 _EDGE_MM = 1.0
 """The field is laid out over sqrt(outer + this - rho): near the stretched arm postures go with that root."""
@@ -73,6 +84,13 @@ class PostureField:
         reference[:, 0] += np.arctan2(tip_mm[:, 1], tip_mm[:, 0])
         return reference
 
+    def reaches(self, points_mm: FloatArray) -> BoolArray:
+        """(n,) whether points of the paper (n, 2) lie within the field's radii and the joint limits."""
+        radius = np.hypot(*points_mm.T)
+        _, good = self.postures_at(np.column_stack((points_mm, np.zeros(len(points_mm)))))
+        reached: BoolArray = (radius >= self.radii_mm[0]) & (radius <= self.radii_mm[-1]) & good
+        return reached
+
     def postures_at(self, tip_mm: FloatArray) -> tuple[FloatArray, BoolArray]:
         """Exact postures (n, n_free) at tips (n, 3), and where they exist within the joint limits."""
         postures, exact = project(kinematics_of(self.arm), self.reference(tip_mm), tip_mm)
@@ -91,11 +109,53 @@ def within_limits(arm: Arm, free: FloatArray, slack: float = 1e-9, first_joint: 
 def posture_field(arm: Arm, weights: PostureWeights = _WEIGHTS) -> PostureField:
     """The field of an arm, computed once. Errors: PlanError where the arm cannot have one, ArmFileError where its file
     contradicts itself."""
-    return _computed(arm, weights)
+    return posture_sheets(arm, weights)[0]
 
 
 @lru_cache(maxsize=16)
-def _computed(arm: Arm, weights: PostureWeights) -> PostureField:
+def posture_sheets(arm: Arm, weights: PostureWeights = _WEIGHTS) -> tuple[PostureField, ...]:
+    """The field that reaches over most radii, then fields in other branches, each over as many as it can of those that
+    the ones before leave out. Nearly all arms have one. Errors: as `posture_field`."""
+    cost, radii, samples = choice_of_postures(arm, weights)
+    left_out = np.array([len(postures) > 0 for postures in samples])
+    sheets: list[PostureField] = []
+    while not sheets or left_out.sum() >= _FEWEST_RADII:
+        sheet = _field(cost, radii, samples, left_out if sheets else None)
+        covered = (radii > sheet.radii_mm[0] - COARSE_STEP_MM) & (radii < sheet.radii_mm[-1] + COARSE_STEP_MM)
+        if sheets and (left_out & covered).sum() < _FEWEST_RADII:
+            break
+        sheets.append(sheet)
+        left_out &= ~covered
+    return tuple(sheets)
+
+
+def _field(cost: PostureCost, radii: FloatArray, samples: list[FloatArray], wanted: BoolArray | None
+           ) -> PostureField:
+    arm = cost.kinematics.arm
+    nodes, course = sharp_course(cost, radii, samples, wanted)
+    spacing_mm = (nodes[-1] - nodes[0]) / (_NODES - 1)
+    course, exact = project(cost.kinematics, smoothed_course(course, _ROUNDING_MM / spacing_mm), on_ray(nodes))
+    if not exact.all():
+        raise PlanError(f"arm {arm.name}: the posture field did not converge")
+    return PostureField(arm, nodes, course)
+
+
+def sheet_references(sheets: Sequence[PostureField], tips_mm: FloatArray, starts: IntArray) -> FloatArray:
+    """(n, n_free) field postures at tips (n, 3), those of each path in the sheet that holds most of it.
+    starts: (n_paths,) the first tip of each."""
+    if len(sheets) == 1 or len(tips_mm) == 0:
+        return sheets[0].reference(tips_mm)
+    held = np.array([np.add.reduceat(sheet.reaches(tips_mm[:, :2]), starts, dtype=np.int64) for sheet in sheets])
+    chosen = np.repeat(held.argmax(axis=0), np.diff(np.append(starts, len(tips_mm))))
+    references = np.empty((len(tips_mm), len(sheets[0].arm.free_joints)))
+    for index, sheet in enumerate(sheets):
+        references[chosen == index] = sheet.reference(tips_mm[chosen == index])
+    return references
+
+
+def choice_of_postures(arm: Arm, weights: PostureWeights) -> tuple[PostureCost, FloatArray, list[FloatArray]]:
+    """What a field is chosen from, and by what: the cost, some radii (n,) and usable postures (m, n_free) at each.
+    Errors: as `posture_field`."""
     first = arm.joints[0]
     if first.kind is not JointKind.REVOLUTE or 0 not in arm.free_joints:
         raise PlanError(f"arm {arm.name}: method 'path' needs a first joint that turns about the vertical axis")
@@ -109,17 +169,24 @@ def _computed(arm: Arm, weights: PostureWeights) -> PostureField:
         raise PlanError(f"arm {arm.name}: no posture within the joint limits puts the pen on the paper"
                         f" at {arm.workspace.inner_radius_mm:g} mm or more from the base axis")
     quickness = float(np.median(slowest_direction_mm_s(kinematics, np.concatenate(samples))))
-    cost = PostureCost(kinematics, weights, quickness, float(radii[-1]))
-    radii, postures = stretched_to_edges(kinematics, *coarse_course(cost, radii, samples))
+    return PostureCost(kinematics, weights, quickness, float(radii[-1])), radii, samples
+
+
+def sharp_course(cost: PostureCost, radii_mm: FloatArray, samples: list[FloatArray], wanted: BoolArray | None = None
+                 ) -> tuple[FloatArray, FloatArray]:
+    """The field before its corners are rounded: its radii (n,) and postures (n, n_free). Errors: PlanError where the
+    course through the samples leaves its branch between them."""
+    kinematics = cost.kinematics
+    radii, postures = stretched_to_edges(kinematics, *cheapest_course(cost, radii_mm, samples, wanted))
     outer = radii[-1] + _EDGE_MM
     nodes = outer - np.linspace(np.sqrt(outer - radii[0]), np.sqrt(_EDGE_MM), _NODES) ** 2
     nodes[0], nodes[-1] = radii[0], radii[-1]
     keep = np.concatenate(([True], np.diff(radii) > 1e-6))
     guess = np.column_stack([np.interp(nodes, radii[keep], column) for column in postures[keep].T])
-    refined, exact = project(kinematics, polished_course(cost, nodes, guess), on_ray(nodes))
+    course, exact = project(kinematics, guess, on_ray(nodes))
     if not exact.all():
-        raise PlanError(f"arm {arm.name}: the posture field did not converge")
-    return PostureField(arm, nodes, refined)
+        raise PlanError(f"arm {kinematics.arm.name}: the posture field did not converge")
+    return nodes, polished_course(cost, nodes, on_ray(nodes), course)
 
 
 def _require_upright(kinematics: Kinematics) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from planner.arms.arm import JointKind, PenHold
 from planner.arms.kinematics import Kinematics
 from planner.arms.projection import joint_scale, project
+from planner.arms.quickest_lift import quickest_lifts
 from planner.arrays import BoolArray, FloatArray, IntArray
 
 COARSE_STEP_MM = 6.0
@@ -14,6 +15,11 @@ COARSE_STEP_MM = 6.0
 
 LIMIT_MARGIN = 0.02
 """Share of a joint's range that postures keep from each end, so that lifts and blends have room."""
+
+_NEAR_LIMIT = 3.0
+"""A limit is near where so many lifts would pass it."""
+_CURVED = 1.1
+"""Allowance for the curvature of a lift."""
 
 _DRAWN = 20_000
 _SAMPLES = 120
@@ -44,7 +50,28 @@ def usable_postures(kinematics: Kinematics, free: FloatArray) -> BoolArray:
     usable: BoolArray = inside & clear & above
     if arm.pen.hold is PenHold.TOOL_AXIS:
         usable &= kinematics.tool_axis(free)[:, 2] < -0.5  # the task alone would let the pen point straight up
+    usable[usable] = _may_be_raised(kinematics, free[usable], joints[usable])
     return usable
+
+
+def _may_be_raised(kinematics: Kinematics, free: FloatArray, joints: FloatArray) -> BoolArray:
+    """(n,) whether joint limits leave room for the arm's quickest lift, to first order. Only postures near a limit, for
+    the cheaper lift in the least joint time, are looked at closely."""
+    arm = kinematics.arm
+    matrix, _ = arm.coupling_matrix
+
+    def has_room(lifts: FloatArray, rows: BoolArray, times: float) -> BoolArray:
+        raised = joints[rows] + times * arm.pen.lift_mm * (lifts @ matrix.T)
+        kept: BoolArray = np.all((raised >= arm.minimum) & (raised <= arm.maximum), axis=1)
+        return kept
+
+    _, jacobian = kinematics.task_and_jacobian(free)
+    lifts = np.linalg.pinv(jacobian * joint_scale(kinematics))[:, :, 2] * joint_scale(kinematics)
+    room = has_room(lifts, np.ones(len(free), dtype=np.bool_), _NEAR_LIMIT)
+    close = ~room
+    if close.any():
+        room[close] = has_room(quickest_lifts(kinematics, arm.max_jerk, free[close]), close, _CURVED)
+    return room
 
 
 def on_ray(radii_mm: FloatArray) -> FloatArray:
@@ -91,7 +118,8 @@ def _add_usable(kinematics: Kinematics, pools: list[FloatArray], rays: IntArray,
         middle = kinematics.free_of((kinematics.arm.minimum + kinematics.arm.maximum) / 2)
         turns = np.round((found - middle) / (2 * np.pi)) * turning
         found = found - 2 * np.pi * turns
-    found[:, 0] = (found[:, 0] + np.pi) % (2 * np.pi) - np.pi
+    turn = (kinematics.arm.minimum[0] + kinematics.arm.maximum[0]) / 2 - np.pi
+    found[:, 0] = (found[:, 0] - turn) % (2 * np.pi) + turn
     usable = usable_postures(kinematics, found)
     for ray in np.unique(rays[usable]).tolist():
         pools[ray] = np.concatenate((pools[ray], found[usable & (rays == ray)]))

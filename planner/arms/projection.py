@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from planner.arms.kinematics import Kinematics
-from planner.arrays import BoolArray, FloatArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 
 RESIDUAL_MM = 1e-9
 """A posture is exact where its task misses by less than this (mm, or 1e-9 rad of pointing)."""
@@ -20,16 +22,34 @@ def joint_scale(kinematics: Kinematics) -> FloatArray:
     return kinematics.free_of(kinematics.arm.max_velocity)
 
 
-def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *, iterations: int = 30
-            ) -> tuple[FloatArray, BoolArray]:
+@dataclass(frozen=True, eq=False, slots=True)
+class Pins:
+    """One more equation for each posture, `row . q = value`: a joint that has to be at a place. rows: (n, n_free)."""
+
+    rows: FloatArray
+    values: FloatArray
+
+
+def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *, iterations: int = 30,
+            pins: Pins | None = None) -> tuple[FloatArray, BoolArray]:
     """For each target the posture closest to its reference, measured in joint time, and whether it is exact.
 
-    reference: (n, n_free); tip_mm: (n, 3). Solves `min |(q - r) / speed|` subject to `task(q) = target` by
-    linearising the task about the latest q (Gauss-Newton on the constraint):
+    reference: (n, n_free); tip_mm: (n, 3); pins: what postures have to meet beside their targets.
+    Solves `min |(q - r) / speed|` subject to `task(q) = target` by linearising the task about the latest q
+    (Gauss-Newton on the constraint):
     `q <- r + S^2 J^T (J S^2 J^T)^-1 (target - task(q) + J (q - r))`, S = diag(speed).
     Depends on target and reference alone, and smoothly, so smooth input gives a smooth joint path.
     """
+    def task_at(rows: IntArray) -> tuple[FloatArray, FloatArray]:
+        task, jacobian = kinematics.task_and_jacobian(solution[rows])
+        if pins is None:
+            return task, jacobian
+        pinned = np.einsum("nj,nj->n", pins.rows[rows], solution[rows])
+        return np.column_stack((task, pinned)), np.concatenate((jacobian, pins.rows[rows, None]), axis=1)
+
     target = kinematics.task_target(tip_mm)
+    if pins is not None:
+        target = np.column_stack((target, pins.values))
     scale = joint_scale(kinematics)
     squared_scale = scale ** 2
     allowed = 0.5 * np.pi / scale.max()
@@ -38,7 +58,7 @@ def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *
     moved = np.full(len(reference), np.inf)
     active = np.arange(len(reference))
     for _ in range(iterations):
-        task, jacobian = kinematics.task_and_jacobian(solution[active])
+        task, jacobian = task_at(active)
         miss = target[active] - task
         best[active] = np.abs(miss).max(axis=1, initial=0.0)
         going = (best[active] > RESIDUAL_MM) | (moved[active] > _STILL_RAD)
@@ -58,6 +78,6 @@ def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *
         moved[active] = np.abs(change).max(axis=1)
         solution[active] += change
     else:
-        task, _ = kinematics.task_and_jacobian(solution[active])
+        task, _ = task_at(active)
         best[active] = np.abs(target[active] - task).max(axis=1, initial=0.0)
     return solution, best <= 100 * RESIDUAL_MM

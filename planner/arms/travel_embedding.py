@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from planner.arms.arm import Arm
-from planner.arms.posture_field import posture_field
+from planner.arms.posture_field import posture_sheets, sheet_references
 from planner.arrays import FloatArray
 
 
@@ -17,10 +17,11 @@ def travel_embedding(arm: Arm) -> Callable[[FloatArray], FloatArray]:
     A short move from rest to rest takes `(32 |dq| / jerk)^(1/3)`, whatever the speed and acceleration limits.
     Errors: PlanError where the arm has no posture field.
     """
-    field = posture_field(arm)
+    sheets = posture_sheets(arm)
 
     def embed(points_mm: FloatArray) -> FloatArray:
-        postures = field.reference(np.column_stack((points_mm, np.zeros(len(points_mm)))))
+        postures = sheet_references(sheets, np.column_stack((points_mm, np.zeros(len(points_mm)))),
+                                    np.arange(len(points_mm)))
         embedded: FloatArray = arm.complete(postures) / arm.max_jerk
         return embedded
 

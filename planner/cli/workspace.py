@@ -22,9 +22,9 @@ class PaperInReach:
 def paper_in_reach(arm: Arm) -> PaperInReach:
     """Found numerically, in about half a second. Errors: PlanError where the arm has no canvas."""
     from planner.arms.canvas import usable_canvas
-    from planner.arms.posture_field import posture_field
+    from planner.arms.posture_field import posture_sheets
 
-    radii_mm = posture_field(arm).radii_mm
+    sheets = posture_sheets(arm)
+    reach_mm = (min(float(sheet.radii_mm[0]) for sheet in sheets), max(float(sheet.radii_mm[-1]) for sheet in sheets))
     canvas = usable_canvas(arm, arm.pen.lift_mm)
-    return PaperInReach((float(radii_mm[0]), float(radii_mm[-1])), canvas.width_mm, canvas.height_mm,
-                        canvas.corners_arm_mm)
+    return PaperInReach(reach_mm, canvas.width_mm, canvas.height_mm, canvas.corners_arm_mm)

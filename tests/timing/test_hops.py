@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from planner.arms.arm import Arm
 from planner.arms.kinematics import kinematics_of
 from planner.arms.posture_field import posture_field
+from planner.arms.quickest_lift import quickest_lifts
 from planner.arrays import FloatArray
 from planner.timing.hops import Hop, HopRules, Touch, plan_hops
 from planner.timing.limits import Limits
-from planner.timing.quickest_lift import quickest_lifts
 from planner.timing.ruckig_profile import between_states, rest_to_rest
 from tests.arms.chains import DRAWING_ARMS, load_once, tips_by_product
 from tests.timing.rig import share_of_limits

@@ -1,0 +1,74 @@
+"""Hops between postures of different branches: straight up, through the air in joint space, straight down.
+
+The tip cannot stay near the paper while an arm folds over, so joints move from rest to rest along straight lines, if
+need be by way of a posture from which all of the arm is seen to stay clear of the paper.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from planner.arms.kinematics import Kinematics
+from planner.arrays import FloatArray
+from planner.timing.hops import Hop, HopRules, Touch, plan_hops
+from planner.timing.leap_choice import coordinate_limits
+from planner.timing.limits import Limits
+from planner.timing.ruckig_profile import rest_to_rest
+
+_VIAS = 2000
+_MET = 1e-6
+"""Postures that differ by less, in rad or mm, are one."""
+_PROBES = np.linspace(0.0, 1.0, 41)
+
+
+def keeps_branch(kinematics: Kinematics, hop: Hop, limits: Limits, rules: HopRules, meet: Touch) -> bool:
+    """Whether a hop arrives in the posture of its end with no jump: between two branches it cannot."""
+    arrives = np.abs(kinematics.free_of(hop.joints[-1]) - meet.posture).max() < _MET
+    return hop.exact and bool(arrives) and limits.slowing_of(hop.joints, 1 / rules.rate_hz) <= 1 + 1e-6
+
+
+def plan_branch_change(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Touch, meet: Touch) -> Hop:
+    """The hop between two touches by way of the air; not exact where no way clear of the paper is found."""
+    up, down = plan_hops(kinematics, limits, rules, [leave, None], [None, meet])
+    corners = _way(kinematics, limits, rules, kinematics.free_of(up.joints[-1]), kinematics.free_of(down.joints[0]))
+    joints = kinematics.arm.complete(corners)
+    legs = [_leg(limits, rules, joints[k], joints[k + 1])[1:] for k in range(len(joints) - 1)]
+    over_s = sum(map(len, legs)) / rules.rate_hz
+    return Hop(np.concatenate((up.joints, *legs, down.joints[1:])), up.lifting_s,
+               up.travelling_s + up.lowering_s + over_s + down.lifting_s + down.travelling_s, down.lowering_s,
+               up.exact and down.exact and len(legs) > 0)
+
+
+def _way(kinematics: Kinematics, limits: Limits, rules: HopRules, start: FloatArray, end: FloatArray) -> FloatArray:
+    """(k, n_free) corners of the quickest clear way: straight, or by one of some random postures; the start alone where
+    none is clear."""
+    arm = kinematics.arm
+    if _is_clear(kinematics, rules, start, end):
+        return np.stack((start, end))
+    vias = np.random.default_rng(20220601).uniform(arm.minimum, arm.maximum, (_VIAS, arm.n_joints))
+    free = kinematics.free_of(vias)
+    joints = arm.complete(free)
+    within = ((joints >= arm.minimum) & (joints <= arm.maximum)).all(axis=1)
+    ends = arm.complete(np.stack((start, end)))
+    times = sum((np.abs(joints - corner) / limits.velocity).max(axis=1) for corner in ends)
+    for via in free[within][np.argsort(np.asarray(times)[within], kind="stable")]:
+        if _is_clear(kinematics, rules, start, via) and _is_clear(kinematics, rules, via, end):
+            return np.stack((start, via, end))
+    return start[None]
+
+
+def _is_clear(kinematics: Kinematics, rules: HopRules, start: FloatArray, end: FloatArray) -> bool:
+    """Whether the tip stays above the clearance and the links above the paper on the straight line."""
+    line = start + _PROBES[:, None] * (end - start)
+    heights = kinematics.nodes_mm(line)[:, :, 2]
+    return bool(heights[:, -1].min() >= rules.clearance_mm and heights[:, :-1].min() >= 0.0)
+
+
+def _leg(limits: Limits, rules: HopRules, start: FloatArray, end: FloatArray) -> FloatArray:
+    """(n, n_joints) samples from rest to rest along a straight line in joint space."""
+    along = coordinate_limits(np.abs(end - start), limits)
+    motion = rest_to_rest(1.0, float(along.velocity), float(along.acceleration), float(along.jerk))
+    count = int(np.ceil(motion.duration_s * rules.rate_hz - 1e-9))
+    way = motion.at(np.linspace(0.0, motion.duration_s, count + 1))
+    samples: FloatArray = start + way[:, None] * (end - start)
+    return samples
