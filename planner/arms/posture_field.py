@@ -171,7 +171,8 @@ def choice_of_postures(arm: Arm, weights: PostureWeights) -> tuple[PostureCost, 
     radii, samples = sampled_rays(kinematics)
     if not any(len(postures) for postures in samples):
         raise PlanError(f"arm {arm.name}: no posture within the joint limits puts the pen on the paper"
-                        f" at {arm.workspace.inner_radius_mm:g} mm or more from the base axis")
+                        f" at {arm.workspace.inner_radius_mm:g} mm or more from the base axis, with room to lift it by"
+                        f" {arm.pen.lift_mm:g} mm")
     quickness = float(np.median(slowest_direction_mm_s(kinematics, np.concatenate(samples))))
     return PostureCost(kinematics, weights, quickness, float(radii[-1])), radii, samples
 
