@@ -1,8 +1,9 @@
 """One Newton step after the other towards the least time: a primal-dual interior-point method for many paths at once.
 
-The Newton systems are banded, so work is linear in the number of cells. Divided by sqrt(b), the jerk limit is a linear
-expression against J / sqrt(b); the curvature of that right-hand side is used where it leaves the Newton system positive definite and dropped elsewhere (sequential convex programming). Every iterate is
-strictly feasible: what is returned keeps the limits there even if the iteration stops early.
+The Newton systems are banded, so work is linear in the number of cells. Divided by sqrt(b), the jerk limit is a
+linear expression against J / sqrt(b); the curvature of that right-hand side is used where it leaves the Newton system
+positive definite and dropped elsewhere (sequential convex programming). Every iterate is strictly feasible: what is
+returned keeps the limits there even if the iteration stops early.
 
 Arrays have the cells on their last axis, so that sums over joints and ends run along memory.
 """
