@@ -86,7 +86,7 @@ class _RevoluteSection(_JointBase):
     @model_validator(mode="after")
     def _what_is_thick_has_length(self) -> Self:
         if self.thickness_mm is not None and self.d_mm == 0 and self.a_mm == 0:
-            raise ValueError(f"thickness_mm {self.thickness_mm:g} is that of a link with no length: d_mm and a_mm are 0")
+            raise ValueError(f"thickness_mm {self.thickness_mm:g} is that of no link: d_mm and a_mm are 0")
         return self
 
 

@@ -1,8 +1,9 @@
 """How much room is left between the links of an arm, and between them and the paper.
 
-A link whose thickness is known is a capsule about each of the two segments of its row, along d and along a. Two capsules
-are |segment, segment| minus their half thicknesses apart. Where a joint holds two together they always touch, so there
-the fold counts: under a right angle, the far end of the shorter one has to keep clear of the other's axis.
+A link whose thickness is known is a capsule about each of the two segments of its row, along d and along a. The
+clearance of two capsules is the distance of their segments less half of each thickness. Where a joint holds two
+together they always touch, so there the fold counts: under a right angle, the far end of the shorter one has to keep
+that far from the axis of the other. So it does where what lies between two is too short to ever hold them apart.
 """
 
 from __future__ import annotations
@@ -88,7 +89,7 @@ class LinkClearance:
         return stacked.min(axis=0), stacked.argmin(axis=0)
 
     def collisions(self, sequences: Sequence[FloatArray], kept_mm: float = KEPT_MM) -> list[Collision | None]:
-        """For each sequence of all joints (n, n_joints), n > 0, where clearance is least, if it is less than kept_mm."""
+        """For each sequence of postures (n, n_joints), n > 0, where clearance is least, if it is less than kept_mm."""
         if not self.names or not sequences:
             return [None] * len(sequences)
         rooms, which = self.least_mm(kinematics_of(self._arm).free_of(np.concatenate(sequences)))
@@ -130,8 +131,8 @@ def _fold_mm(near_one: FloatArray, far_one: FloatArray, near_other: FloatArray, 
 
 def segment_distance(p0: FloatArray, p1: FloatArray, q0: FloatArray, q1: FloatArray) -> FloatArray:
     """(n,) distances of segments p0 p1 and q0 q1, all (n, 3): that of the nearest points of their lines, `p0 + s u` and
-    `q0 + t v` with `s = (b e - c d) / (a c - b^2)`, `t = (a e - b d) / (a c - b^2)`, where both are within the segments;
-    else that of an end from the other segment."""
+    `q0 + t v` with `s = (b e - c d) / (a c - b^2)`, `t = (a e - b d) / (a c - b^2)`, where both are within the
+    segments; else that of an end from the other segment."""
     u, v, w = p1 - p0, q1 - q0, p0 - q0
     a, b, c, d, e = _dot(u, u), _dot(u, v), _dot(v, v), _dot(u, w), _dot(v, w)
     determinant = a * c - b * b
