@@ -1,4 +1,4 @@
-"""Where the pen is: forward kinematics and Jacobian of one posture, in plain NumPy."""
+"""Where the pen is: forward kinematics of many postures, and the Jacobian of one, in plain NumPy."""
 
 from __future__ import annotations
 
@@ -43,3 +43,21 @@ def tip_at(arm: Arm, joints: FloatArray) -> Tip:
     z, turns = np.array(joint_axes), np.array([joint.kind is JointKind.REVOLUTE for joint in arm.joints])[:, None]
     return Tip(origin, axis, np.where(turns, np.cross(z, origin - np.array(joint_origins)), z).T,
                np.where(turns, np.cross(z, axis), 0.0).T)
+
+
+def frame_origins_mm(arm: Arm, positions: FloatArray) -> FloatArray:
+    """(n, n_joints, 3) origins of the frames after each joint at `positions` (n, n_joints), rad or mm: the last is
+    the tip, and links run between them. The product of the standard DH rows, as in `tip_at`."""
+    rotation, origin = np.eye(3), np.zeros((len(positions), 3))
+    origins = []
+    for joint, value in zip(arm.joints, positions.T, strict=True):
+        revolute = joint.kind is JointKind.REVOLUTE
+        theta = joint.theta_rad + (value if revolute else np.zeros_like(value))
+        d_mm = joint.d_mm + (np.zeros_like(value) if revolute else value)
+        ct, st, ca, sa = np.cos(theta), np.sin(theta), cos(joint.alpha_rad), sin(joint.alpha_rad)
+        origin = origin + (rotation @ np.stack((joint.a_mm * ct, joint.a_mm * st, d_mm), axis=-1)[..., None])[..., 0]
+        rotation = rotation @ np.stack((
+            np.stack((ct, -st * ca, st * sa), axis=-1), np.stack((st, ct * ca, -ct * sa), axis=-1),
+            np.broadcast_to([0.0, sa, ca], (len(positions), 3))), axis=-2)
+        origins.append(origin)
+    return np.stack(origins, axis=1)
