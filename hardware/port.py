@@ -1,0 +1,133 @@
+"""The doorway to pyserial: lines to controllers, by device name or by URL, whose failures are told in one sentence."""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import serial
+from serial.tools import list_ports
+
+from planner.errors import HardwareError
+
+try:
+    from termios import error as _TerminalError
+except ImportError:  # Windows has no terminals of this kind
+    _TerminalError = OSError
+
+_WRITE_TIMEOUT_S = 2.0
+"""A line that takes nothing for so long is dead: a controller's own buffer empties in milliseconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """Where a controller is: a device name or a pyserial URL (socket://, rfc2217://, loop://), and how fast it talks.
+
+    baud: None for what the controller comes with.
+    """
+
+    name: str
+    baud: int | None = None
+
+    def open(self, usual_baud: int) -> Port:
+        """An open port at `baud`, or at the one that is usual for the controller. Errors: HardwareError."""
+        try:
+            return Port(self.name, serial.serial_for_url(
+                self.name, baudrate=self.baud or usual_baud, timeout=0.0, write_timeout=_WRITE_TIMEOUT_S,
+                exclusive=True))
+        except (ValueError, OSError, _TerminalError) as error:
+            raise HardwareError(f"{self.name}: {_why_not(self.name, error)}") from error
+
+
+class Port:
+    """An open line. Every failure of it is a HardwareError that names it."""
+
+    def __init__(self, name: str, opened: serial.SerialBase) -> None:
+        self.name = name
+        self._serial = opened
+
+    @property
+    def baud(self) -> int:
+        return int(self._serial.baudrate)
+
+    def read(self, size: int, timeout_s: float = 0.0) -> bytes:
+        """As many as `size` bytes, fewer where no more have come within `timeout_s`."""
+        with self._failures_named():
+            if self._serial.timeout != timeout_s:
+                self._serial.timeout = timeout_s
+            return bytes(self._serial.read(size))
+
+    def write(self, message: bytes) -> None:
+        with self._failures_named():
+            self._serial.write(message)
+
+    def discard_input(self) -> None:
+        """Forget what has come and was not read."""
+        with self._failures_named():
+            self._serial.reset_input_buffer()
+
+    def close(self) -> None:
+        """Let go of the line, whatever state it is in. Allowed more than once."""
+        try:
+            self._serial.close()
+        except (OSError, _TerminalError):  # it is gone already
+            return
+
+    @contextmanager
+    def _failures_named(self) -> Iterator[None]:
+        try:
+            yield
+        except serial.SerialTimeoutException as error:
+            raise HardwareError(f"{self.name}: the controller takes no more bytes; is it powered, and does the line "
+                                "need another --baud?") from error
+        except (OSError, _TerminalError, TypeError) as error:  # TypeError: pyserial reading a port lost meanwhile
+            raise HardwareError(f"{self.name}: the line failed ({_reason(error)}); check the cable and the power of "
+                                "the controller") from error
+
+
+@dataclass(frozen=True, slots=True)
+class PluggedIn:
+    """A serial device of this computer. usb_id: (vendor, product), None where it is not on USB."""
+
+    device: str
+    description: str
+    usb_id: tuple[int, int] | None
+
+
+def plugged_in() -> list[PluggedIn]:
+    """The serial devices of this computer, by name."""
+    return [PluggedIn(port.device, port.description if port.description != "n/a" else "",
+                      None if port.vid is None or port.pid is None else (port.vid, port.pid))
+            for port in sorted(list_ports.comports())]
+
+
+def _why_not(name: str, error: Exception) -> str:
+    """What keeps a line from being opened, and what to do about it."""
+    number = error.errno if isinstance(error, OSError) else None
+    if number in (errno.ENOENT, errno.ENODEV, errno.ENXIO):
+        devices = ", ".join(port.device for port in plugged_in())
+        return "there is no such port; " + (f"plugged in: {devices}" if devices else "nothing is plugged in")
+    if number in (errno.EACCES, errno.EPERM):
+        return f"no permission to open it; {_permission(Path(name))}"
+    if number in (errno.EBUSY, errno.EAGAIN):
+        return "another program has it open; close that first"
+    return f"cannot be opened ({_reason(error)}); plan ports lists what is plugged in"
+
+
+def _permission(device: Path) -> str:
+    try:
+        group = device.group()
+    except (OSError, KeyError, NotImplementedError):
+        return "ask whoever administers this computer"
+    return f"join the group that may: sudo usermod -aG {group} $USER, then log in anew"
+
+
+def _reason(error: Exception) -> str:
+    """The operating system's words where there are any, on one line."""
+    while isinstance(error.__context__, OSError) and not (isinstance(error, OSError) and error.errno):
+        error = error.__context__
+    words = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return " ".join(words.split())
