@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,10 +14,15 @@ from serial.tools import list_ports
 
 from planner.errors import HardwareError
 
-try:
-    from termios import error as _TerminalError
-except ImportError:  # Windows has no terminals of this kind
-    _TerminalError = OSError
+_FAILURES: tuple[type[Exception], ...] = (OSError, TypeError)
+"""What a line that fails raises: pyserial's own errors are OSErrors; TypeError where another thread closed it."""
+if sys.platform != "win32":
+    import termios
+
+    _FAILURES = (*_FAILURES, termios.error)
+
+_REFUSALS = (*_FAILURES, ValueError)
+"""What opening a line may raise: ValueError for a URL or a speed that means nothing."""
 
 _WRITE_TIMEOUT_S = 2.0
 """A line that takes nothing for so long is dead: a controller's own buffer empties in milliseconds."""
@@ -38,14 +44,14 @@ class Line:
             return Port(self.name, serial.serial_for_url(
                 self.name, baudrate=self.baud or usual_baud, timeout=0.0, write_timeout=_WRITE_TIMEOUT_S,
                 exclusive=True))
-        except (ValueError, OSError, _TerminalError) as error:
+        except _REFUSALS as error:
             raise HardwareError(f"{self.name}: {_why_not(self.name, error)}") from error
 
 
 class Port:
     """An open line. Every failure of it is a HardwareError that names it."""
 
-    def __init__(self, name: str, opened: serial.SerialBase) -> None:
+    def __init__(self, name: str, opened: serial.Serial) -> None:
         self.name = name
         self._serial = opened
 
@@ -73,7 +79,7 @@ class Port:
         """Let go of the line, whatever state it is in. Allowed more than once."""
         try:
             self._serial.close()
-        except (OSError, _TerminalError):  # it is gone already
+        except _FAILURES:  # it is gone already
             return
 
     @contextmanager
@@ -83,7 +89,7 @@ class Port:
         except serial.SerialTimeoutException as error:
             raise HardwareError(f"{self.name}: the controller takes no more bytes; is it powered, and does the line "
                                 "need another --baud?") from error
-        except (OSError, _TerminalError, TypeError) as error:  # TypeError: pyserial reading a port lost meanwhile
+        except _FAILURES as error:
             raise HardwareError(f"{self.name}: the line failed ({_reason(error)}); check the cable and the power of "
                                 "the controller") from error
 
