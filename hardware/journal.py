@@ -79,7 +79,7 @@ class Journal:
 
     def __init__(self, path: Path, beginning: Entry) -> None:
         """Begin a new journal in place of any other, on disk when this returns. Errors: OutputError."""
-        self._path = path
+        self._path, self.next_stroke = path, beginning.next_stroke
         with written_aside(path) as file:
             cast("IO[str]", file).write(_line(journal=_VERSION, sha256=beginning.sha256, arm=beginning.arm,
                                               driver=beginning.driver, next_stroke=beginning.next_stroke))
@@ -93,7 +93,8 @@ class Journal:
 
     def finished(self, stroke: int) -> None:
         """Stroke `stroke` and all before it are drawn."""
-        self._written.append(self._writer.submit(self._add, _line(next_stroke=stroke + 1)))
+        self.next_stroke = stroke + 1
+        self._written.append(self._writer.submit(self._add, _line(next_stroke=self.next_stroke)))
 
     def close(self, ended: str, *, complete: bool = False) -> None:
         """Say how the run ended, and wait until everything is on disk. Errors: OutputError."""
