@@ -8,11 +8,12 @@ from typing import IO, cast
 
 import numpy as np
 
-from hardware.tip import frame_origins_mm
+from hardware.tip import link_nodes_mm
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.trajectory import written_aside
 
+_GIVES = 0.9
 _MARGIN_MM = 5.0
 _PEN_MM = 0.4
 
@@ -20,11 +21,11 @@ _PEN_MM = 0.4
 def drawn_lines(arm: Arm, positions: FloatArray) -> list[FloatArray]:
     """Lines (n, 2) in arm millimetres that the pen leaves as the joints go through `positions` (n, n_joints).
 
-    Pens give a little: one draws from below half the clearance on, where a planned tip moves straight up or down and
+    Pens give a little: one draws from just below the clearance on, where a planned tip moves straight up or down and
     a real one is not quite where it should be. A tap is a line of points on one spot.
     """
-    tip_mm = frame_origins_mm(arm, positions)[:, -1]
-    down = np.concatenate(([False], tip_mm[:, 2] <= arm.pen.clearance_mm / 2, [False]))
+    tip_mm = link_nodes_mm(arm, positions)[:, -1]
+    down = np.concatenate(([False], tip_mm[:, 2] <= _GIVES * arm.pen.clearance_mm, [False]))
     begins, ends = np.flatnonzero(down[1:] & ~down[:-1]), np.flatnonzero(down[:-1] & ~down[1:])
     return [tip_mm[begin:end, :2] for begin, end in zip(begins, ends, strict=True)]
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from hardware.stopping import lift, slow_down
-from hardware.tip import frame_origins_mm
+from hardware.tip import link_nodes_mm
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.errors import PlanError
@@ -33,14 +33,14 @@ def gentle_move(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -
     if np.allclose(start, goal, rtol=0.0, atol=_SAME):
         return np.empty((0, arm.n_joints))
     ends = np.stack((start, goal))
-    low = frame_origins_mm(arm, ends)[:, -1, 2] < arm.pen.clearance_mm - _GRAZE_MM
+    low = link_nodes_mm(arm, ends)[:, -1, 2] < arm.pen.clearance_mm - _GRAZE_MM
     slowed_hz = rate_hz / _SHARE
     for heights_mm in (np.where(low, arm.pen.lift_mm, -np.inf), *(arm.pen.lift_mm * n * np.ones(2) for n in _LIFTS)):
         up, down = (lift(arm, end, slowed_hz, height_mm) for end, height_mm in zip(ends, heights_mm, strict=True))
         line = _straight(arm, np.concatenate((start[None], up))[-1], np.concatenate((goal[None], down))[-1], rate_hz)
         points = np.concatenate((up, line, np.concatenate((goal[None], down))[-2::-1]))
-        heights = frame_origins_mm(arm, line)[:, :, 2]
-        free_of_paper = heights.min() >= min(-_GRAZE_MM, frame_origins_mm(arm, ends)[:, :, 2].min())
+        heights = link_nodes_mm(arm, line)[:, :, 2]
+        free_of_paper = heights.min() >= min(-_GRAZE_MM, link_nodes_mm(arm, ends)[:, :, 2].min())
         if (heights[:, -1].min() >= arm.pen.clearance_mm - _GRAZE_MM and free_of_paper
                 and slow_down(arm, np.concatenate((start[None], points)), 1 / rate_hz) <= 1):
             return points

@@ -24,6 +24,8 @@ from planner.trajectory import TRAVELLING
 
 _STALL_S = 0.1
 """After a stall longer than this the rest is played that much later: catching up would be a leap."""
+_THERE = 1e-6
+"""So far from the park pose, in rad or mm, the arm is there."""
 _LOWERED_SLOWER = 3
 """A pen comes down at a third of the pace at which it goes up."""
 
@@ -206,7 +208,7 @@ class _Playing:
                       self._parked() and end is not End.EMERGENCY_STOPPED, tuple(self._driver.statistics()))
 
     def _parked(self) -> bool:
-        return np.array_equal(self._position, self._programme.park)
+        return np.allclose(self._position, self._programme.park, rtol=0.0, atol=_THERE)
 
     def _pause(self) -> None:
         """Rest with the pen up until the request changes; if it is to go on, be back at full pace."""

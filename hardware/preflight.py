@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from hardware.calibration import Calibration
-from hardware.tip import frame_origins_mm
+from hardware.tip import link_nodes_mm
 from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import HardwareError, TrajectoryFileError
@@ -63,7 +63,7 @@ def set_points(trajectory: Trajectory, arm: Arm, source: Path) -> FloatArray:
         refuse(sample, f"joint {arm.joints[joint].name} at {trajectory.positions[sample, joint]:.6g} deg breaks its "
                        f"coupling, which asks for {driven[sample, joint]:.6g}")
     positions: FloatArray = np.clip(arm.from_file_units(trajectory.positions), arm.minimum, arm.maximum)
-    height_mm = frame_origins_mm(arm, positions)[:, -1, 2]
+    height_mm = link_nodes_mm(arm, positions)[:, -1, 2]
     off = np.where(trajectory.pen, np.abs(height_mm), -height_mm) > _OFF_PAPER_MM
     if off.any():
         sample = int(np.argmax(off))

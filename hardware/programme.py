@@ -9,7 +9,7 @@ import numpy as np
 
 from hardware.gentle_move import gentle_move
 from hardware.stopping import interpolate, lift, set_off
-from hardware.tip import frame_origins_mm
+from hardware.tip import link_nodes_mm
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray, IntArray
 from planner.errors import UsageError
@@ -88,9 +88,9 @@ def _start_of(arm: Arm, set_points: FloatArray, stroke: IntArray, index: int) ->
     begins = int(of_stroke[0])
     earlier = np.flatnonzero(stroke[:begins] != TRAVELLING)
     hop = np.arange(int(earlier[-1]) + 1 if len(earlier) else 0, begins + 1)
-    heights_mm = frame_origins_mm(arm, set_points[hop])[:, -1, 2]
+    heights_mm = link_nodes_mm(arm, set_points[hop])[:, -1, 2]
     return int(hop[np.argmax(heights_mm)])
 
 
 def _is_low(arm: Arm, posture: FloatArray) -> bool:
-    return bool(frame_origins_mm(arm, posture[None])[0, -1, 2] < arm.pen.clearance_mm)
+    return bool(link_nodes_mm(arm, posture[None])[0, -1, 2] < arm.pen.clearance_mm)

@@ -45,19 +45,21 @@ def tip_at(arm: Arm, joints: FloatArray) -> Tip:
                np.where(turns, np.cross(z, axis), 0.0).T)
 
 
-def frame_origins_mm(arm: Arm, positions: FloatArray) -> FloatArray:
-    """(n, n_joints, 3) origins of the frames after each joint at `positions` (n, n_joints), rad or mm: the last is
-    the tip, and links run between them. The product of the standard DH rows, as in `tip_at`."""
+def link_nodes_mm(arm: Arm, positions: FloatArray) -> FloatArray:
+    """(n, 2 n_joints, 3) where links bend at `positions` (n, n_joints), rad or mm: for each joint the end of its
+    offset d and the end of its length a, the last of all being the tip. The DH rows' product, as in `tip_at`."""
     rotation, origin = np.eye(3), np.zeros((len(positions), 3))
-    origins = []
+    nodes = []
     for joint, value in zip(arm.joints, positions.T, strict=True):
         revolute = joint.kind is JointKind.REVOLUTE
         theta = joint.theta_rad + (value if revolute else np.zeros_like(value))
         d_mm = joint.d_mm + (np.zeros_like(value) if revolute else value)
         ct, st, ca, sa = np.cos(theta), np.sin(theta), cos(joint.alpha_rad), sin(joint.alpha_rad)
-        origin = origin + (rotation @ np.stack((joint.a_mm * ct, joint.a_mm * st, d_mm), axis=-1)[..., None])[..., 0]
+        bend = origin + rotation[..., 2] * d_mm[:, None]
+        length = np.stack((joint.a_mm * ct, joint.a_mm * st, np.zeros_like(ct)), axis=-1)
+        origin = bend + (rotation @ length[..., None])[..., 0]
         rotation = rotation @ np.stack((
             np.stack((ct, -st * ca, st * sa), axis=-1), np.stack((st, ct * ca, -ct * sa), axis=-1),
             np.broadcast_to([0.0, sa, ca], (len(positions), 3))), axis=-2)
-        origins.append(origin)
-    return np.stack(origins, axis=1)
+        nodes += [bend, origin]
+    return np.stack(nodes, axis=1)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from hardware.drawn import drawn_lines, write_svg
-from hardware.tip import frame_origins_mm
+from hardware.tip import link_nodes_mm
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.cli.output import check_target
@@ -56,6 +56,6 @@ def _is_svg(target: Path) -> bool:
 def _wanted(trajectory: Trajectory, arm: Arm, set_points: FloatArray, first_stroke: int) -> Iterator[FloatArray]:
     """The tip's path on the paper, stroke by stroke."""
     samples = np.flatnonzero(trajectory.stroke >= first_stroke)
-    tip_mm = frame_origins_mm(arm, set_points[samples])[:, -1, :2]
+    tip_mm = link_nodes_mm(arm, set_points[samples])[:, -1, :2]
     begins = np.flatnonzero(np.diff(trajectory.stroke[samples], prepend=-1))
     yield from np.split(tip_mm, begins[1:])
