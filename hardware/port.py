@@ -21,7 +21,7 @@ if sys.platform != "win32":
 
     _FAILURES = (*_FAILURES, termios.error)
 
-_REFUSALS = (*_FAILURES, ValueError)
+_REFUSALS: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 """What opening a line may raise: ValueError for a URL or a speed that means nothing."""
 
 _WRITE_TIMEOUT_S = 2.0
