@@ -24,9 +24,9 @@ def set_target(channel: int, pulse_us: float) -> bytes:
     return bytes((_SET_TARGET, channel, *_fourteen_bits(round(pulse_us / STEP_US))))
 
 
-def unlimited_speed(channel: int) -> bytes:
+def unlimited(channel: int) -> tuple[bytes, bytes]:
     """No limit of the board's own on speed or acceleration."""
-    return bytes((_SET_SPEED, channel, 0, 0)) + bytes((_SET_ACCELERATION, channel, 0, 0))
+    return bytes((_SET_SPEED, channel, 0, 0)), bytes((_SET_ACCELERATION, channel, 0, 0))
 
 
 def get_position(channel: int) -> bytes:

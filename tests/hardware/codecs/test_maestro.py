@@ -14,7 +14,7 @@ def test_examples_of_the_users_guide() -> None:
     assert maestro.set_target(0, 1500.0) == bytes.fromhex("84 00 70 2E")
     assert maestro.get_position(5) == bytes.fromhex("90 05")
     assert maestro.with_crc(bytes.fromhex("83 01")) == bytes.fromhex("83 01 17")
-    assert maestro.unlimited_speed(5) == bytes.fromhex("87 05 00 00 89 05 00 00")
+    assert maestro.unlimited(5) == (bytes.fromhex("87 05 00 00"), bytes.fromhex("89 05 00 00"))
 
 
 @given(channel=st.integers(0, 31), pulse_us=st.floats(0, 4095.8))
