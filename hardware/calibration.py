@@ -18,6 +18,9 @@ from planner.errors import HardwareError
 _ROUNDING = 1e-6
 """Beyond its range by no more than this, in us or counts, a value is at its end: angles come from converted degrees."""
 
+_LEAP = 0.05
+"""Of a servo's range: so far beyond it may lean unpowered against its stop, and be taken back at once."""
+
 _Described = TypeVar("_Described", Servo, BusServo)
 
 
@@ -39,6 +42,11 @@ class Calibration:
         self.unit, self.addresses = unit, addresses
         self._curves = curves
 
+    @property
+    def spans(self) -> FloatArray:
+        """(n_joints,) from one end of each servo's range to the other."""
+        return np.array([curve.high - curve.low for curve in self._curves])
+
     def to_servos(self, positions: FloatArray) -> FloatArray:
         """Pulses or counts (..., n_joints), not rounded, of positions (..., n_joints) in rad or mm.
 
@@ -46,6 +54,20 @@ class Calibration:
         """
         columns = [_told(curve, positions[..., k], self.unit) for k, curve in enumerate(self._curves)]
         return np.stack(columns, axis=-1)
+
+    def within(self, values: FloatArray) -> FloatArray:
+        """Where servos stand by what they tell, (n_joints,), moved to the ends of their ranges where just beyond.
+
+        Errors: HardwareError naming joint, value and range of one that stands further beyond than a leap may go.
+        """
+        low, high = np.array([(curve.low, curve.high) for curve in self._curves]).T
+        inside: FloatArray = np.clip(values, low, high)
+        astray = np.abs(values - inside) > _LEAP * (high - low)
+        if astray.any():
+            k = int(np.argmax(astray))
+            raise HardwareError(f"joint {self._curves[k].joint.name} stands at {values[k]:g} {self.unit}, outside its "
+                                f"range of {low[k]:g} to {high[k]:g} {self.unit}; move it inside by hand, unpowered")
+        return inside
 
     def to_joints(self, values: FloatArray) -> FloatArray:
         """Positions (..., n_joints) in rad or mm of pulses or counts, extended straight beyond a curve's ends."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,10 +21,10 @@ if sys.platform != "win32":
 
     _FAILURES = (*_FAILURES, termios.error)
 
-_REFUSALS = (*_FAILURES, ValueError)
+_REFUSALS: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 """What opening a line may raise: ValueError for a URL or a speed that means nothing."""
 
-_WRITE_TIMEOUT_S = 2.0
+_WRITE_TIMEOUT_S = 1.0
 """A line that takes nothing for so long is dead: a controller's own buffer empties in milliseconds."""
 
 
@@ -55,9 +55,9 @@ class Port:
         self.name = name
         self._serial = opened
 
-    @property
-    def baud(self) -> int:
-        return int(self._serial.baudrate)
+    def seconds(self, size: int) -> float:
+        """How long `size` bytes are on the line: ten bits each. 0 over a network, where no one here knows."""
+        return 0.0 if "://" in self.name else 10 * size / float(self._serial.baudrate)
 
     def read(self, size: int, timeout_s: float = 0.0) -> bytes:
         """As many as `size` bytes, fewer where no more have come within `timeout_s`."""
@@ -77,10 +77,11 @@ class Port:
 
     def close(self) -> None:
         """Let go of the line, whatever state it is in. Allowed more than once."""
-        try:
+        held = getattr(self._serial, "_socket", None)  # which pyserial forgets to close once the other end is gone
+        with suppress(*_FAILURES):
             self._serial.close()
-        except _FAILURES:  # it is gone already
-            return
+        if held is not None:
+            held.close()
 
     @contextmanager
     def _failures_named(self) -> Iterator[None]:
@@ -124,9 +125,10 @@ def _why_not(name: str, error: Exception) -> str:
 
 
 def _permission(device: Path) -> str:
-    try:
+    group = "root"
+    with suppress(OSError, KeyError, NotImplementedError):
         group = device.group()
-    except (OSError, KeyError, NotImplementedError):
+    if group == "root":
         return "ask whoever administers this computer"
     return f"join the group that may: sudo usermod -aG {group} $USER, then log in anew"
 

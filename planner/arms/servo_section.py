@@ -14,7 +14,7 @@ from typing import Annotated, Literal, Self, TypeVar
 from pydantic import AfterValidator, Field, model_validator
 
 from planner.arms.arm import BusServo, Servo
-from planner.arms.file_section import NotNegative, Number, Positive, Section
+from planner.arms.file_section import NotNegative, Number, Section
 
 _End = TypeVar("_End", int, float)
 
@@ -41,13 +41,14 @@ def _monotone(table: list[list[float]]) -> list[list[float]]:
 
 _Row = Annotated[list[Number], Field(min_length=2, max_length=2)]
 _Table = Annotated[list[_Row], Field(min_length=2), AfterValidator(_monotone)]
-_PulseRange = Annotated[list[Positive], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
+_Pulse = Annotated[float, Field(gt=0, le=4000)]
+_PulseRange = Annotated[list[_Pulse], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
 _Count = Annotated[int, Field(ge=-(2**31), lt=2**31)]
 _CountRange = Annotated[list[_Count], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
 
 
 class _ServoSection(Section):
-    channel: Annotated[int, Field(ge=0, le=255)] | None = None
+    channel: Annotated[int, Field(ge=0, le=31)] | None = None
     pulse_at_zero_us: Number | None = None
     table: _Table | None = None
     trim_us: Number = 0.0
