@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import select
 import signal
 import sys
@@ -15,6 +16,8 @@ from hardware.player import Request
 KEYS = "space or p pauses and resumes, q or Ctrl-C stops and parks, x or Esc stops at once and holds"
 
 _PAUSE, _STOP, _EMERGENCY_STOP = b" pP", b"qQ", (b"x", b"X", b"\x1b")
+_SEQUENCES = re.compile(rb"\x1b(\[[0-?]*[ -/]*[@-~]|O.)")
+"""What arrows and function keys arrive as, which begins as Esc does."""
 _SEVERITY = (Request.GO, Request.PAUSE, Request.STOP, Request.EMERGENCY_STOP)
 
 
@@ -39,9 +42,7 @@ class Controls:
         return self._request
 
     def _press(self, keys: bytes) -> None:
-        """An arrow key arrives as Esc and more at once: that is no Esc."""
-        if keys.startswith(b"\x1b") and len(keys) > 1:
-            return
+        keys = _SEQUENCES.sub(b"", keys)
         for key in (keys[place:place + 1] for place in range(len(keys))):
             if key in _EMERGENCY_STOP:
                 self._demand(Request.EMERGENCY_STOP)

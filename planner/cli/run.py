@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     import argparse
 
     from hardware.calibration import Calibration
-    from hardware.clock import Clock
     from hardware.driver import Driver
     from hardware.journal import Entry, Journal
     from hardware.player import Progress
@@ -50,9 +49,12 @@ def run(arguments: list[str]) -> int:
     _refuse_contradictions(options)
 
     from hardware.clock import InstantClock, WallClock
+    from hardware.drivers import calibration_of, make_driver
     from hardware.player import End, play
+    from hardware.port import Line
     from hardware.preflight import servo_values, set_points
     from hardware.programme import make_programme
+    from hardware.simulated_arm import Servos, SimulatedArm
     from planner.arms.arm_file import load_arm
     from planner.cli.run_pictures import check_pictures, save_pictures
     from planner.trajectory import read_trajectory
@@ -61,12 +63,12 @@ def run(arguments: list[str]) -> int:
     trajectory = read_trajectory(options.trajectory)
     arm = load_arm(options.arm or trajectory.arm)
     positions = set_points(trajectory, arm, options.trajectory)
-    calibration = _calibration(options.driver, arm)
+    calibration = calibration_of(options.driver, arm)
     if calibration is not None:
         servo_values(calibration, positions, trajectory, options.trajectory)
     last_stroke = int(trajectory.stroke.max())
     beginning = _beginning(options, arm)
-    if beginning.complete or beginning.next_stroke > last_stroke:
+    if options.resume and (beginning.complete or beginning.next_stroke > last_stroke):
         print_lines([f"{options.trajectory} is drawn to its end; without --resume it is drawn again"])
         return 0
     programme = make_programme(arm, positions, trajectory.stroke, trajectory.rate_hz * options.speed_factor,
@@ -77,7 +79,8 @@ def run(arguments: list[str]) -> int:
         return 0
 
     clock = InstantClock() if options.fast else WallClock()
-    driver = _driver(options, arm, clock)
+    simulated = SimulatedArm(arm, clock, Servos(options.servos)) if options.driver == _SIMULATED else None
+    driver = simulated or make_driver(options.driver, arm, Line(options.port, options.baud), clock)
     journal = _journal(options, beginning)
     ended, complete = "failed", False
     try:
@@ -99,12 +102,9 @@ def run(arguments: list[str]) -> int:
             if not complete:
                 print_note(f"--resume goes on from stroke {journal.next_stroke} of 0..{last_stroke}")
     lines = played.lines()
-    if options.picture:
-        from hardware.simulated_arm import SimulatedArm
-
-        if isinstance(driver, SimulatedArm):
-            lines += save_pictures(options.picture, trajectory, arm, positions, driver.recording.positions,
-                                   beginning.next_stroke)
+    if simulated and options.picture:
+        lines += save_pictures(options.picture, trajectory, arm, positions, simulated.recording.positions,
+                               beginning.next_stroke)
     if not options.quiet:
         print_lines(lines)
     return 0 if complete else EXIT_STOPPED
@@ -114,7 +114,7 @@ def _parser() -> Parser:
     parser = Parser("plan run", _DESCRIPTION, _EPILOG)
     parser.add_argument("trajectory", type=Path, metavar="traj.csv")
     parser.add_argument("--driver", default=_SIMULATED, metavar="NAME",
-                        help="what moves the arm: sim, native, maestro, ssc32, feetech or dynamixel "
+                        help="what moves the arm: sim, native, maestro, maestro-crc, ssc32, feetech or dynamixel "
                              "(default: %(default)s)")
     parser.add_argument("--port", metavar="PORT|URL",
                         help="where the controller is: a serial port as plan ports lists them, or a URL such as "
@@ -142,6 +142,10 @@ def _parser() -> Parser:
 
 def _refuse_contradictions(options: argparse.Namespace) -> None:
     """Errors: UsageError."""
+    from hardware.drivers import DRIVERS
+
+    if options.driver not in DRIVERS:
+        raise UsageError(f"there is no driver '{options.driver}'; there are {', '.join(DRIVERS)}")
     if options.driver == _SIMULATED and (options.port or options.baud):
         raise UsageError("the simulated arm is at no port; name what is there with --driver")
     if options.driver != _SIMULATED and not options.port and not options.dry_run:
@@ -186,15 +190,6 @@ def _journal(options: argparse.Namespace, beginning: Entry) -> Journal | None:
         return None
 
 
-def _calibration(driver: str, arm: Arm) -> Calibration | None:
-    """What the driver's servos are told; None for an arm that is only simulated."""
-    from hardware.calibration import pulse_calibration
-
-    if driver == _SIMULATED and any(joint.servo is None for joint in arm.joints):
-        return None
-    return pulse_calibration(arm)
-
-
 def _told_to_servos(calibration: Calibration | None, programme: Programme, arm: Arm) -> FloatArray | None:
     """(n, n_joints) pulses or counts of the whole programme. Errors: UsageError, before anything is sent."""
     if calibration is None:
@@ -205,10 +200,6 @@ def _told_to_servos(calibration: Calibration | None, programme: Programme, arm: 
         raise UsageError(f"on the way from or to the park pose of arm '{arm.name}': {error}") from error
 
 
-def _driver(options: argparse.Namespace, arm: Arm, clock: Clock) -> Driver:
-    from hardware.simulated_arm import Servos, SimulatedArm
-
-    return SimulatedArm(arm, clock, Servos(options.servos))
 
 
 def _verdict(options: argparse.Namespace, arm: Arm, programme: Programme, calibration: Calibration | None,
@@ -252,7 +243,7 @@ def _reporting(show: Show, driver: Driver, rate_hz: float, last_stroke: int) -> 
         if calls % between and now.reached < now.total:
             return
         doing = f"stroke {now.stroke} of 0..{last_stroke}" if now.stroke >= 0 else "travelling"
-        link = "".join(f"; {line}" for line in driver.statistics()[:1])
-        show(f"{'paused' if now.paused else doing}, {now.left_s:.0f} s left{link}", now.reached, now.total)
+        state = f"{'paused' if now.paused else doing}, {now.left_s:.0f} s left"
+        show("\n".join((state, *driver.statistics())), now.reached, now.total)
 
     return report

@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.journal import Entry, Journal, digest, journal_path, read_journal
@@ -39,8 +39,10 @@ def test_what_is_written_is_read_again(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
+@settings(max_examples=30, deadline=None)
 @given(data=st.data())
-def test_cut_anywhere_it_remembers_what_was_on_disk(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
+def test_cut_anywhere_it_remembers_what_was_on_disk(
+        tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:
     path = tmp_path_factory.mktemp("journal") / "traj.csv.journal"
     _written(path, [3, 4, 5], "stopped")
     whole = path.read_bytes()

@@ -82,6 +82,7 @@ def programme(arm: Arm, sketch: Trajectory) -> Programme:
     return make_programme(arm, arm.from_file_units(sketch.positions), sketch.stroke, sketch.rate_hz)
 
 
+@settings(deadline=None)
 @given(oversleep_s=st.lists(st.floats(0, 0.05), min_size=1, max_size=40), rate_hz=st.floats(50, 1000))
 def test_set_point_k_is_due_at_k_periods_whatever_went_before(oversleep_s: list[float], rate_hz: float) -> None:
     clock = SleepyClock(oversleep_s)
@@ -164,7 +165,7 @@ def _in_order(arm: Arm, recording: Recording, rate_hz: float) -> FloatArray:
     return tips
 
 
-@settings(max_examples=25)
+@settings(max_examples=25, deadline=None)
 @given(share=st.floats(0, 1))
 def test_a_stop_brakes_along_the_drawing_lifts_and_parks(share: float, arm: Arm, programme: Programme) -> None:
     after = int(share * (len(programme.positions) - 1))
@@ -179,7 +180,7 @@ def test_a_stop_brakes_along_the_drawing_lifts_and_parks(share: float, arm: Arm,
     assert finished == drawn
 
 
-@settings(max_examples=25)
+@settings(max_examples=25, deadline=None)
 @given(share=st.floats(0, 1), rests=st.integers(1, 30))
 def test_after_a_pause_it_goes_on_from_the_very_sample(
         share: float, rests: int, arm: Arm, programme: Programme) -> None:

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.clock import InstantClock
@@ -78,6 +78,7 @@ def _settled(arm: Arm, way_deg: list[float]) -> list[float]:
     return places
 
 
+@settings(max_examples=30, deadline=None)
 @given(way_deg=st.lists(st.floats(-60, 60), min_size=1, max_size=10))
 def test_real_servos_come_to_rest_within_dead_band_play_and_resolution(way_deg: list[float]) -> None:
     arm = load_arm("drawing_arm")
