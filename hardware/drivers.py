@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+from hardware.calibration import pulse_calibration
 from hardware.clock import Clock
 from hardware.driver import Driver
 from hardware.port import Line
@@ -44,7 +45,10 @@ def make_driver(name: str, arm: Arm, line: Line | None, clock: Clock) -> Driver:
     if line is None:
         raise UsageError(f"driver {name} needs a --port (plan ports lists what is plugged in)")
     if name == _NATIVE:
+        from hardware.codecs.native import BAUD
         from hardware.native.driver import NativeDriver
 
-        return NativeDriver(arm, line, clock)
+        calibration = pulse_calibration(arm)
+        return NativeDriver(lambda: line.open(BAUD), calibration.to_servos, calibration.addresses, calibration.ranges,
+                            clock)
     return StreamingDriver(arm, _STREAMING[name](arm), line, clock)
