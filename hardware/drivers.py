@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from hardware.calibration import pulse_calibration
+from hardware.calibration import Calibration, pulse_calibration
 from hardware.clock import Clock
 from hardware.driver import Driver
 from hardware.port import Line
@@ -16,7 +16,6 @@ from hardware.streaming.feetech import feetech_bus
 from hardware.streaming.maestro import Maestro
 from hardware.streaming.ssc32 import Ssc32
 from planner.arms.arm import Arm
-from planner.errors import UsageError
 
 SIMULATED = "sim"
 _NATIVE = "native"
@@ -31,19 +30,22 @@ _STREAMING: dict[str, Callable[[Arm], Controller]] = {
 DRIVERS = (SIMULATED, _NATIVE, *_STREAMING)
 
 
-def make_driver(name: str, arm: Arm, line: Line | None, clock: Clock) -> Driver:
-    """The driver of that name, not yet connected. line: None for the simulated arm alone.
+def calibration_of(name: str, arm: Arm) -> Calibration | None:
+    """What the servos of that driver are told; None for an arm that is only simulated and says nothing of servos.
 
-    Errors: UsageError; HardwareError where the arm file does not say how joints are moved.
+    Errors: HardwareError where the arm file does not say how joints are moved.
     """
-    if name not in DRIVERS:
-        raise UsageError(f"there is no driver '{name}'; there are {', '.join(DRIVERS)}")
-    if name == SIMULATED:
-        from hardware.simulated_arm import SimulatedArm
+    if name in _STREAMING:
+        return _STREAMING[name](arm).calibration
+    undescribed = any(joint.servo is None for joint in arm.joints)
+    return None if name == SIMULATED and undescribed else pulse_calibration(arm)
 
-        return SimulatedArm(arm, clock)
-    if line is None:
-        raise UsageError(f"driver {name} needs a --port (plan ports lists what is plugged in)")
+
+def make_driver(name: str, arm: Arm, line: Line, clock: Clock) -> Driver:
+    """The driver of that name at the end of a line, not yet connected.
+
+    Errors: HardwareError where the arm file does not say how joints are moved.
+    """
     if name == _NATIVE:
         from hardware.codecs.native import BAUD
         from hardware.native.driver import NativeDriver
