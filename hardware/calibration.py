@@ -43,9 +43,9 @@ class Calibration:
         self._curves = curves
 
     @property
-    def spans(self) -> FloatArray:
-        """(n_joints,) from one end of each servo's range to the other."""
-        return np.array([curve.high - curve.low for curve in self._curves])
+    def ranges(self) -> FloatArray:
+        """(n_joints, 2): least and most that each servo is ever told."""
+        return np.array([(curve.low, curve.high) for curve in self._curves])
 
     def to_servos(self, positions: FloatArray) -> FloatArray:
         """Pulses or counts (..., n_joints), not rounded, of positions (..., n_joints) in rad or mm.
@@ -60,7 +60,7 @@ class Calibration:
 
         Errors: HardwareError naming joint, value and range of one that stands further beyond than a leap may go.
         """
-        low, high = np.array([(curve.low, curve.high) for curve in self._curves]).T
+        low, high = self.ranges.T
         inside: FloatArray = np.clip(values, low, high)
         astray = np.abs(values - inside) > _LEAP * (high - low)
         if astray.any():

@@ -47,7 +47,10 @@ def make_driver(name: str, arm: Arm, line: Line, clock: Clock) -> Driver:
     Errors: HardwareError where the arm file does not say how joints are moved.
     """
     if name == _NATIVE:
+        from hardware.codecs.native import BAUD
         from hardware.native.driver import NativeDriver
 
-        return NativeDriver(arm, line, clock)
+        calibration = pulse_calibration(arm)
+        return NativeDriver(lambda: line.open(BAUD), calibration.to_servos, calibration.addresses, calibration.ranges,
+                            clock)
     return StreamingDriver(arm, _STREAMING[name](arm), line, clock)

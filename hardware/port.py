@@ -26,6 +26,8 @@ _REFUSALS: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 
 _WRITE_TIMEOUT_S = 1.0
 """A line that takes nothing for so long is dead: a controller's own buffer empties in milliseconds."""
+_WITHOUT_WRITE_TIMEOUT = "rfc2217://"
+"""The one kind of URL for which pyserial has none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +44,8 @@ class Line:
         """An open port at `baud`, or at the one that is usual for the controller. Errors: HardwareError."""
         try:
             return Port(self.name, serial.serial_for_url(
-                self.name, baudrate=self.baud or usual_baud, timeout=0.0, write_timeout=_WRITE_TIMEOUT_S,
-                exclusive=True))
+                self.name, baudrate=self.baud or usual_baud, timeout=0.0, exclusive=True,
+                write_timeout=None if self.name.startswith(_WITHOUT_WRITE_TIMEOUT) else _WRITE_TIMEOUT_S))
         except _REFUSALS as error:
             raise HardwareError(f"{self.name}: {_why_not(self.name, error)}") from error
 

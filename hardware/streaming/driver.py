@@ -20,6 +20,8 @@ _ASK_EVERY_S = 0.5
 _PATIENCE_S = 1.0
 _UNANSWERED = 3
 """So many questions in a row without an answer, and nobody is there. One may be lost to noise."""
+_LAST_CHANCE_S = 0.25
+_LONGEST_ANSWER = 256
 
 
 class StreamingDriver:
@@ -100,7 +102,7 @@ class StreamingDriver:
 
     def _question(self, port: Port, now_s: float) -> bytes:
         """The question that is due now, if any, once the one before is answered or given up."""
-        self._received += port.read(256)
+        self._received += port.read(_LONGEST_ANSWER)
         if self._asked_s is not None:
             self._note_answer(port, waited_s=now_s - self._asked_s)
         if self._asked_s is not None or now_s < self._ask_s:
@@ -111,11 +113,15 @@ class StreamingDriver:
         return self._controller.question()
 
     def _note_answer(self, port: Port, waited_s: float) -> None:
-        if self._controller.take_answer(self._received):
-            self._answered += 1
-            self._asked_s, self._unanswered = None, 0
-        elif waited_s > _PATIENCE_S:
-            self._asked_s = None
+        if not self._controller.take_answer(self._received):
+            if waited_s <= _PATIENCE_S:
+                return
             self._unanswered += 1
-            if self._unanswered == _UNANSWERED:
+            if self._unanswered < _UNANSWERED:
+                self._asked_s = None
+                return
+            self._received += port.read(_LONGEST_ANSWER, _LAST_CHANCE_S)
+            if not self._controller.take_answer(self._received):
                 raise HardwareError(f"{port.name}: the controller no longer answers; check its cable and its power")
+        self._asked_s, self._unanswered = None, 0
+        self._answered += 1

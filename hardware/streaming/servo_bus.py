@@ -79,7 +79,7 @@ class ServoBus:
     def confirm(self, port: Port, values: FloatArray, clock: Clock) -> None:
         for _ in range(_POLLS):
             present = self._present(port)
-            away = np.abs(present - values) > _NEAR * self.calibration.spans
+            away = np.abs(present - values) > _NEAR * np.ptp(self.calibration.ranges, axis=1)
             if not away.any():
                 return
             clock.sleep_until(clock.now_s() + _POLL_S)
@@ -100,14 +100,20 @@ class ServoBus:
             port.write(self._language.sync_write(self._registers.goal, goals))
 
     def question(self) -> bytes:
-        self._asked = self._asked + 1
-        return self._reading(self.calibration.addresses[self._asked % len(self._joints)])
+        """Of one servo after another, whether it still has torque; any answer tells its faults as well."""
+        self._asked += 1
+        servo = self.calibration.addresses[self._asked % len(self._joints)]
+        return self._language.read(servo, self._registers.torque, 1)
 
     def take_answer(self, received: bytearray) -> bool:
         status = self._language.take_status(received)
-        if status is not None:
-            self._complain(status)
-        return status is not None
+        if status is None:
+            return False
+        self._complain(status)
+        if status.data == b"\x00":
+            raise HardwareError(f"{self._named(status.servo)} has let go: it was reset, or protects itself; check the "
+                                "servos' supply and what is in the arm's way")
+        return True
 
     def _goals(self, values: FloatArray) -> bytes:
         counts = np.rint(values).astype(int).tolist()

@@ -17,7 +17,7 @@ from hardware.port import Line, PluggedIn, Port, plugged_in
 from hardware.usb_ids import likely_controller
 from planner.cli import main
 from planner.errors import HardwareError
-from tests.hardware.controllers.lines import pty_line, tcp_line
+from tests.hardware.controllers.lines import Rfc2217, pty_line, tcp_line
 
 
 class Echo:
@@ -54,6 +54,15 @@ def test_bytes_go_there_and_back_until_the_cable_is_pulled(line) -> None:
         with pytest.raises(HardwareError, match=rf"^{far.name}: the line failed \(.+\); check the cable"):
             _exchange(port)
         port.close()
+        port.close()
+
+
+@pytest.mark.filterwarnings("ignore:set(Daemon|Name):DeprecationWarning")  # pyserial's
+def test_bytes_go_over_a_bridge_that_speaks_rfc_2217() -> None:
+    with tcp_line(Rfc2217(Echo())) as far:
+        port = Line(far.name.replace("socket", "rfc2217")).open(115_200)
+        port.write(bytes(range(256)))
+        assert port.read(256, 5.0) == bytes(range(256))
         port.close()
 
 

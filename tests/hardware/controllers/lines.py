@@ -13,6 +13,9 @@ import tty
 from collections.abc import Callable, Iterator
 from typing import Protocol
 
+import serial
+from serial.rfc2217 import PortManager
+
 _QUIET_S = 0.03
 """What is written to a pseudo-terminal is there to be read well within this."""
 
@@ -74,6 +77,25 @@ class FarEnd:
         os.close(self._alarm)
         if self._failure is not None:
             raise self._failure
+
+
+class Rfc2217:
+    """A model behind a serial bridge that speaks RFC 2217, by pyserial's own far end of it."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._replies = bytearray()
+        self._manager = PortManager(serial.serial_for_url("loop://"), self)
+
+    def write(self, reply: bytes) -> None:
+        """What the bridge itself has to say."""
+        self._replies += reply
+
+    def receive(self, message: bytes) -> bytes:
+        answer = self._model.receive(b"".join(self._manager.filter(message)))
+        replies = bytes(self._replies)
+        self._replies.clear()
+        return replies + b"".join(self._manager.escape(answer))
 
 
 @contextlib.contextmanager

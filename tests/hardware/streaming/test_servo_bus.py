@@ -115,6 +115,10 @@ def test_faults_and_silence_are_noticed_in_passing(name: str, kind: type[BusMode
         with pytest.raises(HardwareError, match=r"servo 4 \(wrist_flex\) reports: .*overloaded"):
             _stream(driver)
         model.faults = {}
+        model.memory[3][model.TORQUE] = 0
+        with pytest.raises(HardwareError, match=r"servo 3 \(elbow_flex\) has let go"):
+            _stream(driver)
+        model.memory[3][model.TORQUE] = 1
         model.dead = set(REST)
         with pytest.raises(HardwareError, match="no longer answers"):
             _stream(driver)
