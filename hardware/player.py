@@ -6,14 +6,13 @@ from array import array
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
-from enum import Enum, auto
 
 import numpy as np
 
 from hardware.clock import Clock
 from hardware.driver import Driver
 from hardware.gentle_move import gentle_move
+from hardware.playing import End, Played, Progress, Request
 from hardware.programme import Programme
 from hardware.stopping import brake, lift, set_off
 from hardware.tip import tip_at
@@ -28,73 +27,6 @@ _THERE = 1e-6
 """So far from the park pose, in rad or mm, the arm is there."""
 _LOWERED_SLOWER = 3
 """A pen comes down at a third of the pace at which it goes up."""
-
-
-class Request(Enum):
-    """What the people at the arm want of it now."""
-
-    GO = auto()
-    PAUSE = auto()
-    STOP = auto()
-    EMERGENCY_STOP = auto()
-
-
-class End(Enum):
-    """How playing ended, in a word."""
-
-    PLAYED = "played"
-    STOPPED = "stopped"
-    EMERGENCY_STOPPED = "emergency stop"
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """How far playing has come: `reached` of `total` set points of the programme, as far as the controller tells.
-
-    stroke: being drawn there, or TRAVELLING. left_s: until the end, if nothing comes between.
-    """
-
-    reached: int
-    total: int
-    stroke: int
-    left_s: float
-    paused: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Played:
-    """What became of a programme.
-
-    sent: its set points sent, of `total`. duration_s: from the first set point to the last, stops and pauses included.
-    late_s: how long after its time a set point was handed over, at the median, for 99 of 100, and at worst; zeros where
-    a controller's queue sets the pace. stalls: times that playing stood still for so long that everything after was
-    put off. pen_height_mm: where the tip was left above the paper; parked: whether that is the park pose.
-    link: what the driver tells of its line.
-    """
-
-    end: End
-    sent: int
-    total: int
-    duration_s: float
-    late_s: tuple[float, float, float]
-    stalls: int
-    pen_height_mm: float
-    parked: bool
-    link: tuple[str, ...]
-
-    def lines(self) -> list[str]:
-        """The same in words."""
-        rests = f"the pen rests {round(self.pen_height_mm, 2) + 0.0:.2f} mm above the paper"
-        where = "the arm is parked" if self.parked else "the arm holds where it is"
-        words = [f"{self.end.value} after {self.sent} of {self.total} set points and {self.duration_s:.2f} s; {rests}, "
-                 f"{where}"]
-        if any(self.late_s):
-            median, most, worst = (late_s * 1e3 for late_s in self.late_s)
-            words.append(f"set points were late by {median:.2f} ms (median), {most:.2f} ms (99 of 100) and "
-                         f"{worst:.2f} ms (worst)")
-        if self.stalls:
-            words.append(f"playing stalled {self.stalls} time(s) and went on later")
-        return [*words, *self.link]
 
 
 def play(programme: Programme, arm: Arm, driver: Driver, clock: Clock, *,
@@ -117,24 +49,23 @@ def play(programme: Programme, arm: Arm, driver: Driver, clock: Clock, *,
         try:
             end = playing.run()
             driver.flush()
-            playing.note_finished()
         except _EmergencyStop:
             driver.emergency_stop()
             end = End.EMERGENCY_STOPPED
-            playing.note_finished()
         except HardwareError:
             with suppress(HardwareError):
                 playing.note_finished()
-            raise
-        except KeyboardInterrupt:
-            driver.emergency_stop()
             raise
         except Exception:
             playing.tell_nobody()
             playing.stop()
             driver.flush()
             raise
+        playing.note_finished()
         return playing.outcome(end)
+    except KeyboardInterrupt:
+        driver.emergency_stop()
+        raise
     finally:
         driver.close()
 

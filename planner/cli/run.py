@@ -8,16 +8,15 @@ from typing import TYPE_CHECKING
 
 from planner.cli.parser import Parser
 from planner.cli.quantities import number
-from planner.cli.terminal import Show, print_lines, print_note, print_warnings, progress
-from planner.errors import HardwareError, OutputError, UsageError
+from planner.cli.terminal import Show, print_lines, print_note, progress
+from planner.errors import HardwareError, UsageError
 
 if TYPE_CHECKING:
     import argparse
 
     from hardware.calibration import Calibration
     from hardware.driver import Driver
-    from hardware.journal import Entry, Journal
-    from hardware.player import Progress
+    from hardware.playing import Progress
     from hardware.programme import Programme
     from planner.arms.arm import Arm
     from planner.arrays import FloatArray
@@ -50,12 +49,15 @@ def run(arguments: list[str]) -> int:
 
     from hardware.clock import InstantClock, WallClock
     from hardware.drivers import calibration_of, make_driver
-    from hardware.player import End, play
+    from hardware.player import play
+    from hardware.playing import End
     from hardware.port import Line
     from hardware.preflight import servo_values, set_points
     from hardware.programme import make_programme
     from hardware.simulated_arm import Servos, SimulatedArm
     from planner.arms.arm_file import load_arm
+    from planner.cli.controls import KEYS, controls
+    from planner.cli.resuming import open_journal, where_to_begin
     from planner.cli.run_pictures import check_pictures, save_pictures
     from planner.trajectory import read_trajectory
 
@@ -67,7 +69,7 @@ def run(arguments: list[str]) -> int:
     if calibration is not None:
         servo_values(calibration, positions, trajectory, options.trajectory)
     last_stroke = int(trajectory.stroke.max())
-    beginning = _beginning(options, arm)
+    beginning = where_to_begin(options, arm)
     if options.resume and (beginning.complete or beginning.next_stroke > last_stroke):
         print_lines([f"{options.trajectory} is drawn to its end; without --resume it is drawn again"])
         return 0
@@ -81,11 +83,9 @@ def run(arguments: list[str]) -> int:
     clock = InstantClock() if options.fast else WallClock()
     simulated = SimulatedArm(arm, clock, Servos(options.servos)) if options.driver == _SIMULATED else None
     driver = simulated or make_driver(options.driver, arm, Line(options.port, options.baud), clock)
-    journal = _journal(options, beginning)
-    ended, complete = "failed", False
+    journal = open_journal(options, beginning)
+    ended, complete = "broken off", False
     try:
-        from planner.cli.controls import KEYS, controls
-
         with controls() as wishes, progress(quiet=options.quiet, single=True) as show:
             if not options.quiet:
                 _announce(options, programme, arm, KEYS if wishes.has_keys else "")
@@ -155,39 +155,6 @@ def _refuse_contradictions(options: argparse.Namespace) -> None:
             raise UsageError(f"--{name} goes with the simulated arm, not with --driver {options.driver}")
     if options.resume and options.from_stroke is not None:
         raise UsageError("--resume finds its stroke by itself; leave out --from-stroke")
-
-
-def _beginning(options: argparse.Namespace, arm: Arm) -> Entry:
-    """From which stroke, of which file and for which arm. Errors: TrajectoryFileError, UsageError."""
-    from hardware.journal import Entry, digest, journal_path, read_journal
-
-    path = journal_path(options.trajectory, options.driver)
-    sha256 = digest(options.trajectory) if options.trajectory.is_file() else ""  # a pipe has been read already
-    if not options.resume:
-        return Entry(sha256, arm.name, options.driver, options.from_stroke or 0, "")
-    earlier = read_journal(path)
-    if earlier is None:
-        raise UsageError(f"there is nothing to resume: no journal {path}")
-    if earlier.sha256 != sha256:
-        raise UsageError(f"{options.trajectory} is not what was being drawn, for it has changed since; "
-                         "draw it without --resume")
-    if earlier.arm != arm.name:
-        raise UsageError(f"arm '{earlier.arm}' was drawing {options.trajectory}, not '{arm.name}'")
-    if not earlier.complete:
-        how = f" ({earlier.ended})" if earlier.ended else ""
-        print_note(f"the earlier run ended before stroke {earlier.next_stroke} was finished{how}; "
-                   f"going on from stroke {earlier.next_stroke}")
-    return earlier
-
-
-def _journal(options: argparse.Namespace, beginning: Entry) -> Journal | None:
-    from hardware.journal import Journal, journal_path
-
-    try:
-        return Journal(journal_path(options.trajectory, options.driver), beginning)
-    except OutputError as error:
-        print_warnings([f"there will be nothing for --resume to go by: {error}"])
-        return None
 
 
 def _told_to_servos(calibration: Calibration | None, programme: Programme, arm: Arm) -> FloatArray | None:

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.clock import InstantClock
-from hardware.player import End, Played, Progress, Request, play
+from hardware.player import play
+from hardware.playing import End, Played, Progress, Request
 from hardware.programme import Programme, make_programme
 from hardware.simulated_arm import Recording, SimulatedArm
 from hardware.stopping import slow_down
