@@ -223,7 +223,7 @@ static void sequenced(uint8_t type, uint8_t seq, const uint8_t *payload, uint8_t
     if (state != STATE_READY && state != STATE_RUN && state != STATE_HOLD && state != STATE_UNDERRUN)
         return;
     if (seq != expected) {
-        gap = true;
+        gap |= (uint8_t)(seq - expected) < 128; /* one that came before is here already: nothing is missing */
         return;
     }
     if (type == END) {

@@ -76,7 +76,6 @@ uint16_t playhead_pulse(uint8_t channel)
     }
     uint32_t fraction = (part << 16) / duration;
     int32_t way = (int32_t)key[1 + channel] - from[channel]; /* of 16 bits: its product with a fraction fits 32 */
-    if (way < 0)
-        return from[channel] - (uint16_t)(((uint32_t)-way * fraction) >> 16);
-    return from[channel] + (uint16_t)(((uint32_t)way * fraction) >> 16);
+    uint32_t gone = ((uint32_t)(way < 0 ? -way : way) * fraction + 0x8000) >> 16;
+    return way < 0 ? from[channel] - (uint16_t)gone : from[channel] + (uint16_t)gone;
 }

@@ -37,11 +37,11 @@ _FAULTS = {
 }
 
 
-class Line(Protocol):
+class Transport(Protocol):
     """What the driver needs of a port."""
 
-    def read(self, n: int, timeout: float) -> bytes: ...
-    def write(self, message: bytes) -> None: ...
+    def read(self, size: int, timeout_s: float, /) -> bytes: ...
+    def write(self, message: bytes, /) -> None: ...
     def close(self) -> None: ...
 
 
@@ -55,11 +55,11 @@ class NativeDriver:
 
     ahead_s = _AHEAD_S
 
-    def __init__(self, open_line: Callable[[], Line], pulses_us: Callable[[FloatArray], FloatArray],
+    def __init__(self, open_line: Callable[[], Transport], pulses_us: Callable[[FloatArray], FloatArray],
                  channels: Sequence[int], ranges_us: FloatArray, clock: Clock) -> None:
         self._open_line, self._pulses_us, self._clock = open_line, pulses_us, clock
         self._channels, self._ranges_us = tuple(channels), ranges_us
-        self._line: Line | None = None
+        self._line: Transport | None = None
         self._link = Link()
         self._reader = native.Reader()
         self._status: Status | None = None
@@ -88,7 +88,8 @@ class NativeDriver:
         self._configure(pulses)
         if self._now().state is State.OFF:
             self._command(Order.ARM, lambda order: native.arm(order, pulses))
-            self._wait_until(lambda status: status.state is State.READY)
+            while self._now().state is not State.READY:
+                self._exchange(_POLL_S)
             self._prepare()
         else:  # held since an earlier run: go to where this one sets out, as slowly as befits a path not checked
             self._prepare()
@@ -122,6 +123,7 @@ class NativeDriver:
         if self._line is None or self._stopped:
             return
         self._stopped = True
+        self._link.restart(0)
         self._command(Order.STOP, every_s=_URGENT_S)
 
     def close(self) -> None:
@@ -255,17 +257,16 @@ class NativeDriver:
                 return self._now().result
         raise HardwareError(f"the controller does not answer {kind.name}: check its cable and its power")
 
-    def _wait_until(self, holds: Callable[[Status], bool]) -> None:
-        while not holds(self._now()):
-            self._exchange(_POLL_S)
-
     def _listen(self, for_s: float, until: Callable[[], bool]) -> bool:
         deadline_s = self._clock.now_s() + for_s
         while not until():
-            remaining_s = deadline_s - self._clock.now_s()
-            if remaining_s <= 0:
+            now_s = self._clock.now_s()
+            if now_s >= deadline_s:
                 return False
-            self._read(min(remaining_s, _POLL_S))
+            due = self._link.outgoing(now_s)  # key frames are not held up by an answer that got lost
+            if due:
+                self._write(due)
+            self._read(min(deadline_s - now_s, _POLL_S))
         return True
 
     def _read(self, wait_s: float) -> None:
@@ -304,7 +305,7 @@ class NativeDriver:
     def _write(self, message: bytes) -> None:
         self._connected().write(message)
 
-    def _connected(self) -> Line:
+    def _connected(self) -> Transport:
         if self._line is None:
             raise HardwareError("the controller is not connected")
         return self._line

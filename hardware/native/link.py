@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 from hardware.codecs import native
 
-_WINDOW = 8
+_WINDOW = 5
 """Frames on the way: enough to keep the line busy, few enough that an order is not stuck behind them."""
-_UNANSWERED_S = 0.05
+_UNANSWERED_S = 0.03
 """What is not acknowledged after so long is sent again."""
-_SETTLING_S = 0.01
+_SETTLING_S = 0.005
 """After going back, complaints for so long are about what was on the way before."""
 
 

@@ -1,6 +1,6 @@
 /* The controller without the metal: the firmware in simavr, its line on a pty or in lock-step, its pins in a file.
  *
- *     emulator FIRMWARE.elf PINS.bin --pty LINK [--speed 1]      real time; LINK leads to the pty
+ *     emulator FIRMWARE.elf PINS.bin --pty LINK                  real time; LINK leads to the pty
  *     emulator FIRMWARE.elf PINS.bin --lockstep                  time passes only as asked on standard input
  *     ... [--flip RATE] [--drop RATE] [--duplicate RATE] [--seed N]   of bytes, both ways
  *
@@ -194,9 +194,9 @@ static void move_cable(const char *link)
         exit(1);
 }
 
-static void real_time(const char *link, double speed)
+static void real_time(const char *link)
 {
-    double began = now() - (double)avr->cycle / 16e6 / speed;
+    double began = now() - (double)avr->cycle / 16e6;
     uint8_t bytes[4096];
     move_cable(link);
     while (!ended) {
@@ -212,7 +212,7 @@ static void real_time(const char *link, double speed)
             bytes[n] = from_controller.at[from_controller.out++];
         if (n && write(line, bytes, (size_t)n) < 0 && errno != EAGAIN && errno != EBADF) /* nobody listens: lost */
             return;
-        double ahead = began + (double)avr->cycle / 16e6 / speed - now();
+        double ahead = began + (double)avr->cycle / 16e6 - now();
         fflush(pins);
         if (ahead > 0)
             usleep((useconds_t)(1e6 * ahead));
@@ -228,13 +228,11 @@ int main(int argc, char **argv)
     FILE *replies = fdopen(dup(1), "wb");
     dup2(2, 1); /* simavr chats on standard output */
     const char *link = NULL;
-    double speed = 1;
     if (argc < 4 || elf_read_firmware(argv[1], &firmware) || !(pins = fopen(argv[2], "wb")))
         return 2;
     for (int i = 3; i < argc; i += 2) {
         const char *value = i + 1 < argc ? argv[i + 1] : "";
         if (!strcmp(argv[i], "--pty")) link = value;
-        if (!strcmp(argv[i], "--speed")) speed = atof(value);
         if (!strcmp(argv[i], "--flip")) flip = atof(value);
         if (!strcmp(argv[i], "--drop")) drop = atof(value);
         if (!strcmp(argv[i], "--duplicate")) duplicate = atof(value);
@@ -267,7 +265,7 @@ int main(int argc, char **argv)
     }
     start_ticking();
     if (link)
-        real_time(link, speed);
+        real_time(link);
     else
         lockstep(replies);
     fclose(pins);

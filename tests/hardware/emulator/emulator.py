@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import os
 import shutil
 import signal
 import struct
 import subprocess
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -84,10 +84,16 @@ class Emulator:
     def reset(self) -> None:
         self.process.send_signal(signal.SIGUSR1)
 
+    def move_cable(self) -> None:
+        """Pull it, or put it back."""
+        self.process.send_signal(signal.SIGHUP)
+
     def stop_timer(self) -> None:
         self.process.send_signal(signal.SIGUSR2)
 
     def end(self) -> None:
+        if self.stack_report:
+            return
         if self.process.poll() is None:
             self.process.terminate()
         if self.process.stdin and not self.process.stdin.closed:
@@ -109,11 +115,11 @@ class Emulator:
         return Pulses(rises / CYCLES_PER_S, (falls - rises) / CYCLES_PER_S * 1e6)
 
 
-def on_pty(built: Build, folder: Path, faults: Faults = Faults(), speed: float = 1.0) -> tuple[Emulator, Path]:
-    """A controller in real time (or `speed` times that), and the device name of its line."""
+def on_pty(built: Build, folder: Path, faults: Faults = Faults()) -> tuple[Emulator, Path]:
+    """A controller in real time, and the device name of its line."""
     pty, pins = folder / "tty", folder / "pins.bin"
-    process = subprocess.Popen([built.emulator, built.firmware, pins, "--pty", pty, "--speed", str(speed),
-                                *faults.options()], stderr=subprocess.PIPE)
+    process = subprocess.Popen([built.emulator, built.firmware, pins, "--pty", pty, *faults.options()],
+                               stderr=subprocess.PIPE)
     deadline_s = time.monotonic() + 10
     while not pty.exists() and time.monotonic() < deadline_s and process.poll() is None:
         time.sleep(0.01)
@@ -133,7 +139,7 @@ class LockStep:
         self._out += message
 
     def read(self, n: int, timeout: float) -> bytes:
-        deadline = self.cycle + round(timeout * CYCLES_PER_S)
+        deadline = self.cycle + math.ceil(timeout * CYCLES_PER_S)
         while not self._in and self.cycle < deadline:
             self._run(deadline - self.cycle)
         taken, self._in = self._in[:n], self._in[n:]
@@ -164,7 +170,3 @@ def in_lock_step(built: Build, folder: Path, faults: Faults = Faults()) -> LockS
                                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     return LockStep(Emulator(process, folder / "pins.bin"))
 
-
-def played(channels: Sequence[Pulses], since_s: float) -> list[Pulses]:
-    """The same from `since_s` on."""
-    return [Pulses(one.starts_s[one.starts_s >= since_s], one.widths_us[one.starts_s >= since_s]) for one in channels]
