@@ -63,7 +63,7 @@ class Result(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """The channels are to be at `pulses` (1/16 us) `duration` (0.1 ms, 1 to 65535) after they reached the one before."""
+    """The channels are to be at `pulses` (1/16 us) `duration` (0.1 ms, 1 to 65535) after they were at those before."""
 
     duration: int
     pulses: tuple[int, ...]

@@ -254,8 +254,9 @@ void machine_receive(const uint8_t *body, uint8_t n)
         sequenced(type, seq, body + 2, n - 2);
         return;
     }
-    /* PING asks for the state and is done as often as it comes; what came again after its answer got lost is not. */
-    if (type != HELLO && type == order_type && seq == order_seq)
+    /* An order that comes again because its answer got lost is not obeyed again. HELLO, STOP and CLEAR are: they
+     * lead to the same however often, and have to work whatever went before. */
+    if (type != HELLO && type != STOP && type != CLEAR && type == order_type && seq == order_seq)
         return;
     order_result = obey(type, body + 2, n - 2);
     order_type = type;

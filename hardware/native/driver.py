@@ -75,13 +75,14 @@ class NativeDriver:
         self._sent = 0  # set points handed over, those that wait to be merged included
         self._done = 0  # set points reached
         self._keys_reached = 0
-        self._ahead: deque[tuple[int, float]] = deque()  # set points sent by the end of each unreached key, its duration
-        self._merging: tuple[FloatArray, float] | None = None
+        self._ahead: deque[tuple[int, float]] = deque()  # for each key not reached: set points by its end, duration
+        self._merging: tuple[tuple[int, ...], float] | None = None
 
     def connect(self, pose: FloatArray) -> None:
         self._line = self._open_line()
         self._session = int.from_bytes(os.urandom(2), "little") % 0xFFFF + 1
         self._introduce()
+        self._understand()
         pulses = self._on_channels(pose)
         if self._now().state is State.FAULT:
             self._command(Order.CLEAR)
@@ -156,10 +157,13 @@ class NativeDriver:
             # A delimiter first: whatever is stuck in the controller's buffer ends here.
             self._write((b"\0" if attempt == 0 else b"") + native.hello(self._order, self._session))
             if self._listen(_ASK_S, lambda: self._info is not None and self._status is not None):
-                break
-        if self._info is None or self._status is None:
-            raise HardwareError("the controller does not answer: is it powered, is this its port, and has it the"
-                                " project's firmware (hardware/firmware/README.md)?")
+                return
+        raise HardwareError("the controller does not answer: is it powered, is this its port, and has it the"
+                            " project's firmware (hardware/firmware/README.md)?")
+
+    def _understand(self) -> None:
+        if self._info is None:
+            raise HardwareError("the controller is not connected")
         if self._info.protocol != native.PROTOCOL_VERSION:
             raise HardwareError(f"the controller speaks version {self._info.protocol} of the protocol, this program"
                                 f" version {native.PROTOCOL_VERSION}: flash the firmware that belongs to it")

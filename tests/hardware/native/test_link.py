@@ -50,11 +50,8 @@ def test_all_arrives_once_and_in_order(total: int, frames_lost: list[bool], answ
             pushed += 1
             link.push(Key(pushed, (24000,)))
         for stuffed in filter(None, link.outgoing(now_s).split(b"\0")):
-            gap = False
-            if frames_lost and frames_lost.pop():
-                gap = True
-            else:
-                gap = controller.take(stuffed + b"\0")
+            lost = bool(frames_lost) and frames_lost.pop()
+            gap = lost or controller.take(stuffed + b"\0")
             if not (answers_lost and answers_lost.pop()):
                 link.received(controller.status(gap), now_s)
         controller.played = max(controller.played, len(controller.arrived) - 3)

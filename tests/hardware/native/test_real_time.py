@@ -13,7 +13,8 @@ import pytest
 from hardware.clock import WallClock
 from hardware.codecs import native
 from hardware.native.driver import NativeDriver
-from hardware.port import open_port
+from hardware.port import Line
+from planner.arrays import FloatArray
 from planner.errors import HardwareError
 from tests.hardware.emulator.emulator import Emulator
 from tests.hardware.native.runs import PERIOD_S, against_plan, driver_on, waves
@@ -39,8 +40,13 @@ def busy_cores() -> Iterator[None]:
         process.join()
 
 
+def _play(driver: NativeDriver, plan: FloatArray) -> None:
+    for positions in plan:
+        driver.send(positions, PERIOD_S)
+
+
 def _driver(device: Path) -> NativeDriver:
-    return driver_on(open_port(str(device), native.BAUD), WallClock())
+    return driver_on(Line(str(device)).open(native.BAUD), WallClock())
 
 
 @pytest.mark.usefixtures("busy_cores")
@@ -50,8 +56,7 @@ def test_busy_cores_starve_nothing(pty: tuple[Emulator, Path]) -> None:
     driver.connect(plan[0])
     time.sleep(0.1)
     since_s = emulator.pulses(0).starts_s[-1]
-    for positions in plan[1:]:
-        driver.send(positions, PERIOD_S)
+    _play(driver, plan[1:])
     driver.flush()
     driver.close()
     time.sleep(0.2)
@@ -64,12 +69,10 @@ def test_a_cable_pulled_and_put_back(pty: tuple[Emulator, Path]) -> None:
     emulator, device = pty
     plan, driver = waves(3.0), _driver(device)
     driver.connect(plan[0])
-    for positions in plan[1:100]:
-        driver.send(positions, PERIOD_S)
+    _play(driver, plan[1:100])
     emulator.move_cable()
     with pytest.raises(HardwareError, match="cable"):
-        for positions in plan[100:]:
-            driver.send(positions, PERIOD_S)
+        _play(driver, plan[100:])
     driver.close()
     emulator.move_cable()
     deadline_s = time.monotonic() + 5
@@ -77,8 +80,7 @@ def test_a_cable_pulled_and_put_back(pty: tuple[Emulator, Path]) -> None:
         time.sleep(0.01)
     again = _driver(device)
     again.connect(plan[0])
-    for positions in plan[1:50]:
-        again.send(positions, PERIOD_S)
+    _play(again, plan[1:50])
     again.flush()
     assert again.executed() == 49
     again.close()
