@@ -57,8 +57,8 @@ def usable_postures(kinematics: Kinematics, free: FloatArray) -> BoolArray:
         usable &= kinematics.tool_axis(free)[:, 2] < -0.5  # the task alone would let the pen point straight up
     usable[usable] = _may_be_raised(kinematics, free[usable], joints[usable])
     if link_clearance(arm).names:
-        found = free[usable]
-        usable[usable] = _links_apart(kinematics, found + arm.pen.lift_mm * quickest_lifts(kinematics, arm.max_jerk, found))
+        lifts = quickest_lifts(kinematics, arm.max_jerk, free[usable])
+        usable[usable] = _links_apart(kinematics, free[usable] + arm.pen.lift_mm * lifts)
     return usable
 
 
