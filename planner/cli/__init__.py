@@ -67,6 +67,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.check import check
 
             return check(rest)
+        case "compare":
+            from planner.cli.compare import compare
+
+            return compare(rest)
         case "arm":
             from planner.cli.arm import arm
 

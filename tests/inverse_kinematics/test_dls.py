@@ -10,17 +10,10 @@ import pytest
 from planner.arms.arm import Arm
 from planner.arms.kinematics import kinematics_of
 from planner.arrays import FloatArray
+from planner.comparison.worked_example import ERRATA, ITERATIONS, LAMBDA_SQUARED, TARGET_CM
 from planner.inverse_kinematics.dls import DOCUMENTED, FOR_DRAWING, DlsSettings, iterate, solve_sequence
 from tests.arms.chains import load_once, random_postures, reachable_postures, tips_by_product
-from tests.inverse_kinematics.worked_example import (
-    DAMPED_PSEUDOINVERSE,
-    ERRATA,
-    ITERATIONS,
-    J_JT,
-    JACOBIAN,
-    LAMBDA_SQUARED,
-    TARGET_CM,
-)
+from tests.inverse_kinematics.worked_example import DAMPED_PSEUDOINVERSE, J_JT, JACOBIAN
 
 PRINTED = 0.5e-4 * (1 + 1e-6)
 """Half a unit of the fourth decimal."""
