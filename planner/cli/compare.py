@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from planner.comparison.targets import Targets
 
 _DESCRIPTION = """\
-Compare the methods of inverse kinematics on the same targets: the documented damped least squares (dls), the same with
-tolerances fit for drawing (dls-drawing), a nonlinear programme for each target (nlp), the closed form (closed-form), and
-the postures that drawings are planned with (path). The targets are single points, points drawn at random, or a
-drawing placed as plan places it. Of single targets the documented iterations are shown one by one."""
+Compare the methods of inverse kinematics on the same targets: the documented damped least squares (dls), the same
+with tolerances fit for drawing (dls-drawing), a nonlinear programme for each target (nlp), the closed form
+(closed-form), and the postures that drawings are planned with (path). The targets are single points, points drawn
+at random, or a drawing placed as plan places it. Of single targets the documented iterations are shown one by one."""
 
 _EPILOG = """\
 examples:
@@ -137,18 +137,20 @@ def _parser() -> Parser:
     parser.usage = "plan compare DRAWING.svg | --target X Y [Z] ... | --random N [--seed S]  [options]"
     parser.add_argument("drawing", nargs="?", type=Path, metavar="DRAWING.svg")
     parser.add_argument("--target", nargs="+", action="append", type=coordinate_mm, metavar="X",
-                        help="X Y [Z] of the pen, mm from the base; may be given several times (Z: default 0, the paper)")
+                        help="X Y [Z] of the pen, mm from the base (Z: default 0, the paper); may be given several times")
     parser.add_argument("--random", type=_count(1, _MOST_TARGETS), metavar="N",
                         help="places on the paper, each within reach of a posture that was drawn at random")
     parser.add_argument("--seed", type=_count(0, 2**32 - 1), metavar="S", help="of --random (default: 0)")
     parser.add_argument("--start", nargs="+", type=angle_deg, metavar="Q",
-                        help="where methods that go from posture to posture begin: a position for each joint (deg, or mm "
-                             "where it slides), or for each that no coupling drives; with a drawing, at each stroke "
-                             "(default: the documents' start for their arm, with a drawing and for other arms "
-                             "the arm's home)")
-    parser.add_argument("--json", metavar="FILE", help="all figures as JSON; - for standard output, in place of the table")
-    parser.add_argument("--plot", type=Path, metavar="FILE", help="a picture (.png, .svg or .pdf): the convergence and the "
-                        "postures, the way along the drawing, or the distributions")
+                        help="where methods that go from posture to posture begin: a position for each joint (deg, or "
+                             "mm where it slides), or for each that no coupling drives; with a drawing, at each "
+                             "stroke (default: the documents' start for their arm; with a drawing, and for other "
+                             "arms, the arm's home)")
+    parser.add_argument("--json", metavar="FILE",
+                        help="all figures as JSON; - for standard output, in place of the table")
+    parser.add_argument("--plot", type=Path, metavar="FILE",
+                        help="a picture (.png, .svg or .pdf): the convergence and the postures, the way along the "
+                             "drawing, or the distributions")
     parser.add_argument("--quiet", action="store_true", help="no progress")
     add_arm_and_placement_options(parser)
     parser.set_defaults(method=PlanSettings().method.value)

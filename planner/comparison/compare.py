@@ -9,7 +9,7 @@ import numpy as np
 
 from planner.arms.arm import Arm, PenHold
 from planner.arms.kinematics import kinematics_of
-from planner.arrays import FloatArray
+from planner.arrays import BoolArray, FloatArray
 from planner.comparison.convergence import Convergence, convergence
 from planner.comparison.drawing_time import StrokeTimes, stroke_times
 from planner.comparison.figures import Figures, figures_of
@@ -70,8 +70,8 @@ def default_start(arm: Arm, kind: TargetKind) -> FloatArray:
 
 
 def compare(arm: Arm, targets: Targets, start: FloatArray, settings: PlanSettings, report: Report) -> Comparison:
-    """Every method on the same targets from joints (n_joints,). A method that the arm has not is a result that says why.
-    Errors: TargetBeyondReach where a single target is."""
+    """Every method on the same targets from joints (n_joints,). A method that the arm has not is a result that says
+    why. Errors: TargetBeyondReach where a single target is."""
     results = []
     times: dict[str, StrokeTimes] = {}
     for index, method in enumerate(METHODS):
@@ -105,12 +105,12 @@ def _with_times(results: Sequence[MethodResult], times: dict[str, StrokeTimes]) 
     """The results with the time of the strokes; those that one method is refused are left out of what is common."""
     if not times:
         return tuple(results)
-    drawn_by_all = ~np.isnan([each.seconds for each in times.values()]).any(axis=0)
+    drawn_by_all = np.isfinite([each.seconds for each in times.values()]).all(axis=0)
     return tuple(_with_time(result, times[result.method.name], drawn_by_all) if result.method.name in times else result
                  for result in results)
 
 
-def _with_time(result: MethodResult, times: StrokeTimes, drawn_by_all: FloatArray) -> MethodResult:
+def _with_time(result: MethodResult, times: StrokeTimes, drawn_by_all: BoolArray) -> MethodResult:
     drawn = ~np.isnan(times.seconds)
     figures = replace(
         result.figures, strokes_refused=int((~drawn).sum()),

@@ -17,6 +17,8 @@ from planner.comparison.targets import TargetKind, Targets
 LIMIT_SLACK = 1e-9
 """rad or mm: rounding that is forgiven at a joint limit."""
 
+_ByUnit = tuple[float | None, float | None]
+
 
 @dataclass(frozen=True, slots=True)
 class Figures:
@@ -26,7 +28,7 @@ class Figures:
     outside_share: with a joint beyond its limits; excess: how far at worst, and excess_joint, which. step: largest
     change of a joint from a target to its neighbour. roughness: second difference of the joints over the square of the
     targets' distance, rms. sideways: error along the paper per degree (or mm) of error of the joints, rms over
-    them. repeat: largest change of a joint where the same target is visited again, in the opposite order.
+    them. repeat: largest change of a joint where the same target is visited again (`Targets.backwards`).
     drawing_s: pen-down time of the strokes that are not refused; drawing_common_s: of those that no method refuses.
     Of revolute joints in degrees, of sliding ones in mm.
     """
@@ -67,7 +69,9 @@ def figures_of(arm: Arm, targets: Targets, found: Measured, *, iterates: bool) -
     some = bool(solved.any())
     worst = int(np.argmax((excess / (arm.maximum - arm.minimum)).max(axis=0, initial=-np.inf)))
     excess_deg, excess_mm = _by_unit(arm, np.maximum(excess, 0.0), np.max)
-    step = roughness = repeat = (None, None)
+    step: _ByUnit = (None, None)
+    roughness: _ByUnit = (None, None)
+    repeat: _ByUnit = (None, None)
     if targets.kind is TargetKind.DRAWING:
         step = _by_unit(arm, np.abs(_steps(targets, found)), np.max)
         roughness = _by_unit(arm, _second_derivatives(targets, found), _rms)
@@ -117,8 +121,7 @@ def _third_of_three(targets: Targets, found: Measured) -> IntArray:
     return chosen
 
 
-def _by_unit(arm: Arm, values: FloatArray, reduce: Callable[[FloatArray], float]
-             ) -> tuple[float | None, float | None]:
+def _by_unit(arm: Arm, values: FloatArray, reduce: Callable[[FloatArray], float]) -> _ByUnit:
     """One figure of values (n, n_joints) for all revolute joints, in degrees, and one for all sliding ones, in mm."""
     in_file_units = arm.to_file_units(values)
     slides = np.array([joint.kind is JointKind.PRISMATIC for joint in arm.joints])

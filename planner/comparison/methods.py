@@ -40,7 +40,8 @@ class ComparedMethod:
 
 def _by_dls(settings: dls.DlsSettings) -> Callable[[Arm, PostureWeights], Solve]:
     def build(arm: Arm, weights: PostureWeights) -> Solve:
-        return _course_by_course(lambda tips_mm, start: dls.solve_sequence(arm, tips_mm, start, settings))
+        return lambda targets, start: _course_by_course(
+            targets, lambda tips_mm: dls.solve_sequence(arm, tips_mm, start, settings))
 
     return build
 
@@ -48,7 +49,9 @@ def _by_dls(settings: dls.DlsSettings) -> Callable[[Arm, PostureWeights], Solve]
 def _by_nlp(arm: Arm, weights: PostureWeights) -> Solve:
     nlp.nlp_solver(arm)
     free_of = kinematics_of(arm).free_of
-    return _course_by_course(lambda tips_mm, start: nlp.solve_sequence(arm, tips_mm, free_of(start)))
+    return lambda targets, start: _course_by_course(
+        targets, lambda tips_mm: nlp.solve_sequence(arm, tips_mm, free_of(start),
+                                                    settle=targets.kind is TargetKind.DRAWING))
 
 
 def _by_closed_form(arm: Arm, weights: PostureWeights) -> Solve:
@@ -56,7 +59,7 @@ def _by_closed_form(arm: Arm, weights: PostureWeights) -> Solve:
 
     def solve(targets: Targets, start: FloatArray) -> Solutions:
         postures = references(arm, targets.tips_mm)
-        return _solutions(arm, postures, ~np.isnan(postures).any(axis=1), targets.tips_mm)
+        return _solutions(arm, postures, np.isfinite(postures).all(axis=1), targets.tips_mm)
 
     return solve
 
@@ -73,13 +76,10 @@ def _by_path(arm: Arm, weights: PostureWeights) -> Solve:
     return solve
 
 
-def _course_by_course(solve_course: Callable[[FloatArray, FloatArray], Solutions]) -> Solve:
-    def solve(targets: Targets, start: FloatArray) -> Solutions:
-        found = [solve_course(course, start) for course in np.split(targets.tips_mm, targets.firsts[1:])]
-        return Solutions(*(np.concatenate([getattr(each, name) for each in found])
-                           for name in ("postures", "converged", "iterations", "error_mm")))
-
-    return solve
+def _course_by_course(targets: Targets, solve_course: Callable[[FloatArray], Solutions]) -> Solutions:
+    found = [solve_course(course) for course in np.split(targets.tips_mm, targets.firsts[1:])]
+    return Solutions(*(np.concatenate([getattr(each, name) for each in found])
+                       for name in ("postures", "converged", "iterations", "error_mm")))
 
 
 def _solutions(arm: Arm, postures: FloatArray, solved: BoolArray, tips_mm: FloatArray) -> Solutions:
@@ -98,7 +98,7 @@ METHODS = (
     ComparedMethod("dls-drawing", "DLS drawing", _by_dls(dls.FOR_DRAWING), _within_mm(dls.FOR_DRAWING),
                    f"not within tolerance after {dls.FOR_DRAWING.most_iterations} iterations", True, Method.DLS),
     ComparedMethod("nlp", "NLP per target", _by_nlp, nlp.TOLERANCE_MM,
-                   "no posture within the joint limits found near the one before", True, Method.NLP),
+                   "found no posture within the joint limits from where it began", True, Method.NLP),
     ComparedMethod("closed-form", "closed form", _by_closed_form, _ROUNDING_MM,
                    "the branch that the arm draws with does not get there", False, Method.CLOSED_FORM),
     ComparedMethod("path", "path optimiser", _by_path, _ROUNDING_MM,

@@ -104,14 +104,14 @@ def convergence_lines(arm: Arm, found: Convergence) -> Iterator[str]:
         yield _iteration(arm, index, state, decimals)
     if not found.converged:
         yield f"not within {_tolerances()} after {DOCUMENTED.most_iterations} iterations"
-    for line in _misprints(arm, found):
-        yield line
+    yield from _misprints(arm, found)
 
 
 def _iteration(arm: Arm, index: int, state: DlsStep, decimals: int) -> str:
     along, across = float(np.hypot(*state.error_mm[:2])), abs(float(state.error_mm[2]))
-    joints = "".join(f"{value + 0.0:>{decimals + 6}.{decimals}f}" for value in arm.to_file_units(state.joints).tolist())
-    lengths = "".join(f"{value + 0.0:>9.3f}" for value in (*state.tip_mm.tolist(), along, across))
+    joints = "".join(f"{round(value, decimals) + 0.0:>{decimals + 6}.{decimals}f}"
+                     for value in arm.to_file_units(state.joints).tolist())
+    lengths = "".join(f"{round(value, 3) + 0.0:>9.3f}" for value in (*state.tip_mm.tolist(), along, across))
     return f"{index:>2}{joints}{lengths}"
 
 
@@ -121,21 +121,26 @@ def _misprints(arm: Arm, found: Convergence) -> Iterator[str]:
     for (index, column, place), correct in ERRATA.items():
         if found.printed and column == "angles_deg":
             printed = found.printed[index].angles_deg[place]
-            yield f"  iteration {index}, {arm.joints[place].name}: {printed:.4f} printed, {correct:.4f} by their equations"
+            yield (f"  iteration {index}, {arm.joints[place].name}: {printed:.4f} printed,"
+                   f" {correct:.4f} by their equations")
 
 
 def _heading(comparison: Comparison) -> str:
     targets = comparison.targets
     count = len(targets.tips_mm)
     what = {TargetKind.SINGLE: f"{count} single target{'s' if count > 1 else ''}",
-            TargetKind.RANDOM: f"{count} random targets on the paper, one after the other",
+            TargetKind.RANDOM: f"{count} random targets on the paper, each from the start",
             TargetKind.DRAWING: f"{count} targets along {len(targets.firsts)} strokes"}[targets.kind]
     return f"{comparison.arm.name}: {what}"
 
 
 def _notes(comparison: Comparison) -> Iterator[str]:
     yield (f"DLS documented stops within {_tolerances()}, DLS drawing within {FOR_DRAWING.tolerance_xy_mm:g} mm;"
-           " neither knows of limits. NLP goes from one target to the next as they do.")
+           " neither knows of limits.")
+    if comparison.targets.kind is TargetKind.RANDOM:
+        yield "The same points again: one after the other, in the opposite order."
+    if comparison.targets.kind is TargetKind.DRAWING:
+        yield "The same points again: the drawing backwards."
     for result in comparison.results:
         name = result.method.title
         if result.refusal is not None:

@@ -24,7 +24,7 @@ class TargetKind(StrEnum):
     SINGLE = "single"
     """Each by itself, from the start."""
     RANDOM = "random"
-    """One after the other, each far from the one before."""
+    """All over the paper, each from the start; backwards one after the other."""
     DRAWING = "drawing"
     """Along strokes, each near the one before."""
 
@@ -42,8 +42,11 @@ class Targets:
     strokes: Sequence[FloatArray] = ()
 
     def backwards(self) -> Targets:
-        """Everything in the opposite order: the last course first, from its end."""
+        """Everything in the opposite order: the last course first, from its end. Random targets become one course, so
+        that each is met from another posture than the start."""
         firsts = len(self.tips_mm) - np.append(self.firsts, len(self.tips_mm))[:0:-1]
+        if self.kind is TargetKind.RANDOM:
+            firsts = firsts[:1]
         return Targets(self.kind, self.tips_mm[::-1], firsts, -self.along_mm[::-1])
 
     def first(self) -> Targets:
@@ -74,7 +77,7 @@ def random_targets(arm: Arm, count: int, seed: int) -> Targets:
         postures, exact = project(kinematics, postures, tips)
         found = np.concatenate((found, tips[exact][usable_postures(kinematics, postures[exact])]))
         if len(found) >= count:
-            return Targets(TargetKind.RANDOM, found[:count], np.zeros(1, dtype=np.int64), np.zeros(count))
+            return Targets(TargetKind.RANDOM, found[:count], np.arange(count), np.zeros(count))
     raise PlanError(f"arm {arm.name}: of {_MOST_DRAWS * _DRAWN} random postures only {len(found)} put the pen on the"
                     " paper within the joint limits")
 

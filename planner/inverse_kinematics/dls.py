@@ -2,8 +2,8 @@
 
 `dq = J^T (J J^T + lambda^2 I)^-1 e` with the geometric Jacobian J of all joints and e = [target - tip; 0],
 `q <- q + dq`, then every driven joint is set from its coupling (documents on the drawing arm, algorithm;
-Buss 2004). Lengths are in centimetres: lambda^2 = 50 weighs cm^2 against rad^2, and only so
-the documented iterations come out. Joint limits are not part of the method.
+Buss 2004). Lengths, those that joints slide by too, are in centimetres: lambda^2 = 50 weighs cm^2 against rad^2, and only
+so the documented iterations come out. Joint limits are not part of the method.
 """
 
 from __future__ import annotations
@@ -109,5 +109,6 @@ def _dls_step(arm: Arm) -> CompiledFunction:
     joint_unit = casadi.diag(casadi.DM([MM_PER_CM if joint.kind is JointKind.PRISMATIC else 1.0
                                         for joint in arm.joints]))
     scaled = to_cm @ jacobian @ joint_unit
-    step = joint_unit @ scaled.T @ casadi.solve(scaled @ scaled.T + damping * casadi.SX.eye(6), to_cm @ casadi.vertcat(error, turn))
+    damped = scaled @ scaled.T + damping * casadi.SX.eye(6)
+    step = joint_unit @ scaled.T @ casadi.solve(damped, to_cm @ casadi.vertcat(error, turn))
     return CompiledFunction("dls", [joints, target, damping], [error, tip, step, casadi.norm_2(turn)], blocks=(1,))

@@ -100,11 +100,11 @@ def nlp_solver(arm: Arm) -> NlpSolver:
     return NlpSolver(arm)
 
 
-def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray) -> Solutions:
+def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, *, settle: bool = True) -> Solutions:
     """Targets (n, 3) one after the other from free joints (n_free,), each near the one before.
 
-    The first is solved until it stays where it is, so that a path does not begin with the way from the start; its
-    iterations count all of that.
+    With `settle` the first is solved until it stays where it is, so that a path does not begin with the way from the
+    start; its iterations count all of that.
     """
     solver = nlp_solver(arm)
     n_targets = len(targets_mm)
@@ -113,7 +113,7 @@ def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray) -> Solut
     iterations = np.zeros(n_targets, dtype=np.int64)
     error_mm = np.empty(n_targets)
     before = start
-    for target in targets_mm[:1]:
+    for target in targets_mm[:1 if settle else 0]:
         for _ in range(_MOST_SETTLING):
             settled, good, count, _ = solver.solve(target, before)
             iterations[0] += count
