@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, cast
@@ -20,6 +21,7 @@ from planner.settings import PlanSettings
 
 if TYPE_CHECKING:
     from planner.arms.arm import Arm
+    from planner.arrays import FloatArray
     from planner.comparison.compare import Comparison
     from planner.comparison.targets import Targets
 
@@ -44,6 +46,8 @@ exit codes: 0 compared, whatever methods failed; 2 unusable input or usage; 3 ou
 
 _STANDARD_OUTPUT = "-"
 _MOST_TARGETS = 1_000_000
+_COUPLED = 1e-4
+"""Degrees by which a posture may miss its coupling."""
 
 
 def compare(arguments: list[str]) -> int:
@@ -58,7 +62,7 @@ def compare(arguments: list[str]) -> int:
 
     arm = load_arm(settings.arm)
     targets, warnings = _targets(options, arm, settings)
-    start = all_joints(arm, options.start, "--start") if options.start else default_start(arm, targets.kind)
+    start = _start(arm, options.start) if options.start else default_start(arm, targets.kind)
     with progress(quiet=options.quiet) as show, interrupts_remembered() as raise_if_interrupted:
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
@@ -87,6 +91,17 @@ def _targets(options: argparse.Namespace, arm: Arm, settings: PlanSettings) -> t
         return random_targets(arm, options.random, options.seed or 0), []
     strokes, warnings = placed_strokes(options.drawing, arm, settings)
     return targets_along(strokes), warnings
+
+
+def _start(arm: Arm, positions: Sequence[float]) -> FloatArray:
+    """Errors: UsageError for a posture that breaks a coupling: no method would begin there."""
+    start = all_joints(arm, positions, "--start")
+    coupled = arm.complete(start[list(arm.free_joints)])
+    for joint, value, wanted in zip(arm.joints, start.tolist(), coupled.tolist(), strict=True):
+        if abs(value - wanted) > _COUPLED * joint.per_file_unit:
+            raise UsageError(f"--start: the coupling of arm '{arm.name}' makes {joint.name}"
+                             f" {wanted / joint.per_file_unit:.6g} {joint.file_unit}; it may be left out")
+    return start
 
 
 def _print(comparison: Comparison, target: str | None) -> None:
@@ -137,7 +152,7 @@ def _parser() -> Parser:
     parser.usage = "plan compare DRAWING.svg | --target X Y [Z] ... | --random N [--seed S]  [options]"
     parser.add_argument("drawing", nargs="?", type=Path, metavar="DRAWING.svg")
     parser.add_argument("--target", nargs="+", action="append", type=coordinate_mm, metavar="X",
-                        help="X Y [Z] of the pen, mm from the base (Z: default 0, the paper); may be given several times")
+                        help="X Y [Z] of the pen, mm from the base (Z: default 0, the paper); may be given again")
     parser.add_argument("--random", type=_count(1, _MOST_TARGETS), metavar="N",
                         help="places on the paper, each within reach of a posture that was drawn at random")
     parser.add_argument("--seed", type=_count(0, 2**32 - 1), metavar="S", help="of --random (default: 0)")

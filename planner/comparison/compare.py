@@ -105,7 +105,7 @@ def _with_times(results: Sequence[MethodResult], times: dict[str, StrokeTimes]) 
     """The results with the time of the strokes; those that one method is refused are left out of what is common."""
     if not times:
         return tuple(results)
-    drawn_by_all = np.isfinite([each.seconds for each in times.values()]).all(axis=0)
+    drawn_by_all: BoolArray = np.all(np.isfinite([each.seconds for each in times.values()]), axis=0)
     return tuple(_with_time(result, times[result.method.name], drawn_by_all) if result.method.name in times else result
                  for result in results)
 

@@ -59,7 +59,8 @@ def _by_closed_form(arm: Arm, weights: PostureWeights) -> Solve:
 
     def solve(targets: Targets, start: FloatArray) -> Solutions:
         postures = references(arm, targets.tips_mm)
-        return _solutions(arm, postures, np.isfinite(postures).all(axis=1), targets.tips_mm)
+        solved: BoolArray = np.all(np.isfinite(postures), axis=1)
+        return _solutions(arm, postures, solved, targets.tips_mm)
 
     return solve
 

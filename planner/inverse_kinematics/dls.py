@@ -2,8 +2,8 @@
 
 `dq = J^T (J J^T + lambda^2 I)^-1 e` with the geometric Jacobian J of all joints and e = [target - tip; 0],
 `q <- q + dq`, then every driven joint is set from its coupling (documents on the drawing arm, algorithm;
-Buss 2004). Lengths, those that joints slide by too, are in centimetres: lambda^2 = 50 weighs cm^2 against rad^2, and only
-so the documented iterations come out. Joint limits are not part of the method.
+Buss 2004). Lengths, those that joints slide by too, are in centimetres: lambda^2 = 50 weighs cm^2 against
+rad^2, and only so the documented iterations come out. Joint limits are not part of the method.
 """
 
 from __future__ import annotations
