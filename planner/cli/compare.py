@@ -151,8 +151,9 @@ def _parser() -> Parser:
     parser = Parser("plan compare", _DESCRIPTION, _EPILOG)
     parser.usage = "plan compare DRAWING.svg | --target X Y [Z] ... | --random N [--seed S]  [options]"
     parser.add_argument("drawing", nargs="?", type=Path, metavar="DRAWING.svg")
-    parser.add_argument("--target", nargs="+", action="append", type=coordinate_mm, metavar="X",
-                        help="X Y [Z] of the pen, mm from the base (Z: default 0, the paper); may be given again")
+    parser.add_argument("--target", nargs="+", action="append", type=coordinate_mm,
+                        metavar=("X", "Y [Z]"), help="a place for the pen, mm from the base (Z: default 0, the paper);"
+                        " negative numbers carry no suffix; may be given again")
     parser.add_argument("--random", type=_count(1, _MOST_TARGETS), metavar="N",
                         help="places on the paper, each within reach of a posture that was drawn at random")
     parser.add_argument("--seed", type=_count(0, 2**32 - 1), metavar="S", help="of --random (default: 0)")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 
@@ -23,7 +23,8 @@ _MOST_RUNS, _ENOUGH_S = 20, 0.2
 class Measured:
     """joints: (n, n_joints) rad or mm; solved: (n,) as the method judges; iterations: (n,); error_mm: (n,); each in the
     order of the targets. again, solved_again: the same targets visited backwards. cold_s: building the
-    solver and the first target; warm_s: a target once it is built, in the mean."""
+    solver and the first target; warm_s: a target once it is built, in the mean; both of processor time, which does
+    not count what else the computer is doing."""
 
     joints: FloatArray
     solved: BoolArray
@@ -36,7 +37,7 @@ class Measured:
 
 
 def measure(method: ComparedMethod, arm: Arm, weights: PostureWeights, targets: Targets, start: FloatArray,
-            clock: Callable[[], float] = perf_counter) -> Measured:
+            clock: Callable[[], float] = process_time) -> Measured:
     """Solve for all targets, forwards and backwards. Errors: PlannerError where the arm has no such method."""
     unknown = replace(arm)  # models are kept by an arm's identity: of this one nothing has been built yet
     began = clock()

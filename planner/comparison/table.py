@@ -136,7 +136,7 @@ def _heading(comparison: Comparison) -> str:
 
 def _notes(comparison: Comparison) -> Iterator[str]:
     yield (f"DLS documented stops within {_tolerances()}, DLS drawing within {FOR_DRAWING.tolerance_xy_mm:g} mm;"
-           " neither knows of limits.")
+           " neither knows of limits. Cold and warm are processor time.")
     if comparison.targets.kind is TargetKind.RANDOM:
         yield "The same points again: one after the other, in the opposite order."
     if comparison.targets.kind is TargetKind.DRAWING:
