@@ -49,7 +49,10 @@ class Servo:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """One DH row and its limits: rad, rad/s, ... for a revolute joint, mm, mm/s, ... for a prismatic one."""
+    """One DH row and its limits: rad, rad/s, ... for a revolute joint, mm, mm/s, ... for a prismatic one.
+
+    thickness_mm: diameter of the row's link, a round bar along its d and its a; None where it is not known.
+    """
 
     name: str
     kind: JointKind
@@ -63,6 +66,7 @@ class Joint:
     max_acceleration: float
     max_jerk: float
     servo: Servo | None = None
+    thickness_mm: float | None = None
 
     @property
     def file_unit(self) -> str:

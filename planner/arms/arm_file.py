@@ -56,6 +56,7 @@ class _JointBase(_Section):
     a_mm: Number = 0.0
     alpha_deg: Number = 0.0
     servo: _ServoSection | None = None
+    thickness_mm: Positive | None = None
 
     @property
     @abstractmethod
@@ -81,6 +82,12 @@ class _RevoluteSection(_JointBase):
     @property
     def limits(self) -> tuple[float, float]:
         return self.min_deg, self.max_deg
+
+    @model_validator(mode="after")
+    def _what_is_thick_has_length(self) -> Self:
+        if self.thickness_mm is not None and self.d_mm == 0 and self.a_mm == 0:
+            raise ValueError(f"thickness_mm {self.thickness_mm:g} is that of no link: d_mm and a_mm are 0")
+        return self
 
 
 class _PrismaticSection(_JointBase):
@@ -232,7 +239,7 @@ def _joint(section: _RevoluteSection | _PrismaticSection) -> Joint:
                       section.servo.resolution_us, section.servo.dead_band_us, section.servo.backlash_deg)
     return Joint(section.name, JointKind(section.kind), math.radians(section.theta_deg), section.d_mm,
                  section.a_mm, math.radians(section.alpha_deg), minimum, maximum, velocity, acceleration,
-                 jerk, servo)
+                 jerk, servo, section.thickness_mm)
 
 
 def _arm(section: _ArmSection) -> Arm:

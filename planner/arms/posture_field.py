@@ -17,6 +17,7 @@ import numpy as np
 
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.kinematics import Kinematics, kinematics_of
+from planner.arms.link_clearance import link_clearance
 from planner.arms.posture_cost import PostureCost
 from planner.arms.posture_course import cheapest_course, polished_course, smoothed_course
 from planner.arms.posture_samples import (
@@ -172,7 +173,7 @@ def choice_of_postures(arm: Arm, weights: PostureWeights) -> tuple[PostureCost, 
     if not any(len(postures) for postures in samples):
         raise PlanError(f"arm {arm.name}: no posture within the joint limits puts the pen on the paper"
                         f" at {arm.workspace.inner_radius_mm:g} mm or more from the base axis, with room to lift it by"
-                        f" {arm.pen.lift_mm:g} mm")
+                        f" {arm.pen.lift_mm:g} mm" + (" and the links apart" if link_clearance(arm).names else ""))
     quickness = float(np.median(slowest_direction_mm_s(kinematics, np.concatenate(samples))))
     return PostureCost(kinematics, weights, quickness, float(radii[-1])), radii, samples
 

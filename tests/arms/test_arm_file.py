@@ -104,6 +104,7 @@ def test_what_is_left_out_has_its_documented_value(read: Reader) -> None:
     assert servo is not None
     assert (servo.resolution_us, servo.dead_band_us, servo.backlash_deg, servo.us_per_deg) == (1, 0, 1, -10)
     assert arm.joints[1].servo is None
+    assert all(joint.thickness_mm is None for joint in arm.joints)
 
 
 def test_couplings_complete_a_posture(read: Reader) -> None:
@@ -131,6 +132,8 @@ FAULTS = {
     "unknown hold": (('hold = "coupling"', 'hold = "glue"'), ("pen.hold:", "(value: 'glue')")),
     "name with a comma": (('name = "waist"', 'name = "waist,1"'), ("joints[0].name:", "(value: 'waist,1')")),
     "limits swapped": (("min_mm = 10.0", "min_mm = 90.0"), ("joints[1]", "lower limit 90", "upper limit 80")),
+    "no thickness": (("a_mm = 25.0", "a_mm = 25.0\nthickness_mm = 0"), ("joints[2].thickness_mm:", "(value: 0)")),
+    "thickness of nothing": (("a_mm = 25.0", "thickness_mm = 12"), ("joints[2]", "thickness_mm 12 is that of no link")),
     "name twice": (('name = "reach"', 'name = "waist"'), ("joints[1].name: 'waist' is used twice",)),
     "pulses swapped": (("[600.0, 2400.0]", "[2400.0, 600.0]"), ("joints[0].servo.pulse_range_us: 2400", "600")),
     "three pulses": (("[600.0, 2400.0]", "[600.0, 900.0, 2400.0]"), ("joints[0].servo.pulse_range_us:",)),
