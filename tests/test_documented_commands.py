@@ -6,6 +6,7 @@ import re
 import shlex
 import shutil
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -41,7 +42,7 @@ def at_hand(words: list[str]) -> list[str]:
 
 def written_by(words: list[str]) -> list[Path]:
     return [Path(named) / "index.html" if option == "--report" else Path(named)
-            for option, named in zip(words, words[1:], strict=False) if option in WRITTEN]
+            for option, named in pairwise(words) if option in WRITTEN]
 
 
 @cache

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
+from typing import IO, cast
 
 from matplotlib.figure import Figure
 
@@ -31,7 +32,13 @@ def save_figure(figure: Figure, target: Path, look: Look = USUAL) -> None:
     Errors: UsageError (unknown suffix), OutputError.
     """
     kind = picture_format(target)
-    with look.style(), warnings.catch_warnings(), written_aside(target, binary=True) as file:
+    with written_aside(target, binary=True) as file:
+        write_figure(figure, cast("IO[bytes]", file), kind, look)
+
+
+def write_figure(figure: Figure, file: IO[bytes], kind: str, look: Look = USUAL) -> None:
+    """Write the figure into an open file; kind is one that `picture_format` answers."""
+    with look.style(), warnings.catch_warnings():
         # A drawing's name in a script that the font lacks shows as boxes; that is no matter for a warning.
         warnings.filterwarnings("ignore", message=r"Glyph .* missing from")
         figure.savefig(file, format=kind, metadata=_UNDATED[kind])

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import base64
 import io
-import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from planner.arms.arm import Arm
 from planner.arms.canvas import canvas_of
@@ -18,6 +16,7 @@ from planner.checking.coverage import distance_from_drawing
 from planner.drawing.drawing import Drawing
 from planner.plots.coloured_path import plot_error, plot_speed
 from planner.plots.drawing import plot_drawing
+from planner.plots.figure_file import write_figure
 from planner.plots.look import Look, Theme
 from planner.plots.paper import pieces
 from planner.plots.profiles import plot_profiles
@@ -26,6 +25,9 @@ from planner.plots.timeline import plot_timeline
 from planner.plots.workspace import plot_workspace
 from planner.settings import PlanSettings
 from planner.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _DPI = 110  # 1408 pixels wide: sharp on a page that is at most 1216 wide
 
@@ -54,8 +56,8 @@ def pictures(trajectory: Trajectory, arm: Arm, drawing: Drawing, tip_mm: FloatAr
         yield _picture("Error", "The distance of the pen from the drawing, on the paper and along the way.",
                        lambda look: plot_error(trajectory, tip_mm, error_mm, settings.tolerance_mm, canvas_mm, reach_mm,
                                                look))
-    yield _picture("Time", "When the arm lowers the pen, rests, draws, lifts and travels, told from the height of the tip "
-                   "at the samples: the plan's own account above counts by its moves, and differs a little.",
+    yield _picture("Time", "When the arm lowers the pen, rests, draws, lifts and travels, told from the height of the "
+                   "tip at the samples: the plan's own account above counts by its moves, and differs a little.",
                    lambda look: plot_timeline(trajectory, tip_mm, arm.pen.clearance_mm, look))
     yield _picture("Joints", "Position, velocity, acceleration and jerk of every joint, with the arm's limits.",
                    lambda look: plot_profiles(trajectory, arm, look))
@@ -78,7 +80,5 @@ def _picture(heading: str, caption: str, figure: Callable[[Look], Figure]) -> Pi
 
 def _address(figure: Figure, look: Look) -> str:
     file = io.BytesIO()
-    with look.style(), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message=r"Glyph .* missing from")  # as in `save_figure`
-        figure.savefig(file, format="png")
+    write_figure(figure, file, "png", look)
     return f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode('ascii')}"
