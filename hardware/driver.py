@@ -13,11 +13,34 @@ class Driver(Protocol):
     Every method may raise HardwareError.
     """
 
-    def connect(self, start: FloatArray) -> None:
-        """Open the line and stand still at `start`, pen up, ready for set points."""
+    ahead_s: float
+    """How long before its time a set point has to be handed over: 0 for controllers without a queue, which move at
+    once. Where there is a queue, playing is paced by it, not by the host's clock."""
 
-    def send(self, positions: FloatArray) -> None:
-        """The joints are to be at `positions` now."""
+    def connect(self, pose: FloatArray) -> None:
+        """Open the line, attach the servos one after another at `pose` and stand there.
+
+        Hobby servos leap to the pose, so it should be where the arm was parked; servos that tell where they are go
+        there slowly.
+        """
+
+    def send(self, positions: FloatArray, duration_s: float) -> None:
+        """The joints are to reach `positions` `duration_s` after they reached those sent before.
+
+        Waits while the controller's queue is full.
+        """
+
+    def executed(self) -> int:
+        """How many set points sent so far are known to have been reached; all where the controller does not tell."""
+
+    def flush(self) -> None:
+        """Return when everything sent has been reached."""
+
+    def emergency_stop(self) -> None:
+        """Stop moving now and hold. Never raises because the arm is stopped already."""
 
     def close(self) -> None:
         """Hold the last set point and let go of the line. Allowed at any time, and more than once."""
+
+    def statistics(self) -> list[str]:
+        """Lines about the link for people: frames, retransmissions, under-runs, lateness."""

@@ -1,125 +1,215 @@
-"""Streaming a trajectory: every set point at its own time, counted from the start so that nothing adds up."""
+"""Playing a programme: every set point at its own time, and a pause, a stop or an e-stop whenever one is asked for."""
 
 from __future__ import annotations
 
-import math
+from array import array
+from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from contextlib import suppress
 
 import numpy as np
 
 from hardware.clock import Clock
 from hardware.driver import Driver
-from hardware.stopping import brake, lift
+from hardware.gentle_move import gentle_move
+from hardware.playing import End, Played, Progress, Request
+from hardware.programme import Programme
+from hardware.stopping import brake, lift, set_off
 from hardware.tip import tip_at
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
+from planner.errors import HardwareError, PlanError
+from planner.trajectory import TRAVELLING
 
-_STOPPING_RATE_HZ = 50.0
-"""A stop is played at no fewer set points a second than this, however coarse the trajectory."""
 _STALL_S = 0.1
 """After a stall longer than this the rest is played that much later: catching up would be a leap."""
+_THERE = 1e-6
+"""So far from the park pose, in rad or mm, the arm is there."""
+_LOWERED_SLOWER = 3
+"""A pen comes down at a third of the pace at which it goes up."""
 
 
-@dataclass(frozen=True, slots=True)
-class Played:
-    """What became of a trajectory.
+def play(programme: Programme, arm: Arm, driver: Driver, clock: Clock, *,
+         request: Callable[[], Request] = lambda: Request.GO,
+         report: Callable[[Progress], None] = lambda progress: None,
+         finished: Callable[[int], None] = lambda stroke: None) -> Played:
+    """Play `programme`: set point k at k / rate after the start, later only by pauses and stalls.
 
-    sent: samples sent, of `total`. duration_s: from the first set point to the last, a stop included.
-    worst_late_s, mean_late_s: how long after its time a sample was sent; late: samples later than a period;
-    stalls: times that playing stood still for so long that everything after was put off.
-    stopped: asked to stop before the end; pen_height_mm: where that left the tip above the paper.
-    """
-
-    sent: int
-    total: int
-    duration_s: float
-    worst_late_s: float
-    mean_late_s: float
-    late: int
-    stalls: int
-    stopped: bool
-    pen_height_mm: float
-
-    def lines(self) -> list[str]:
-        """The same in words."""
-        end = "stopped" if self.stopped else "played"
-        rests = f"the pen rests {round(self.pen_height_mm, 2) + 0.0:.2f} mm above the paper"
-        worst = f"{self.worst_late_s * 1e3:.2f} ms at worst; {self.late} by more than a period"
-        words = [f"{end} after {self.sent} of {self.total} samples and {self.duration_s:.2f} s; {rests}",
-                 f"samples were late by {self.mean_late_s * 1e3:.2f} ms on average and {worst}"]
-        if self.stalls:
-            words.append(f"playing stalled {self.stalls} time(s) and went on later")
-        return words
-
-
-def play(set_points: FloatArray, rate_hz: float, arm: Arm, driver: Driver, clock: Clock, *,
-         stop_requested: Callable[[], bool] = lambda: False,
-         report: Callable[[int, int], None] = lambda sent, total: None) -> Played:
-    """Send sample k of `set_points` (n, n_joints; rad or mm) at k / rate_hz after the start, later only by stalls.
-
-    When `stop_requested()` turns true the arm brakes along the path, the pen goes straight up, and that is all.
-    `report(sent, total)` is called after every sample and has to be quick. The driver is closed in any case.
+    `request()` is asked before every set point. On a pause the arm brakes along the path and the pen goes straight up;
+    then it comes down where it was and goes on from there. On a stop it brakes, lifts and goes to the park pose. On an
+    e-stop it holds where it is. If something fails that is not the arm, such as `report`, it is stopped before the
+    error goes on its way. `report(progress)` is called after every set point and has to be quick;
+    `finished(stroke)` once a stroke is known to be drawn. The driver is closed in any case.
     Errors: HardwareError.
     """
-    total = len(set_points)
-    lateness = _Lateness(1.0 / rate_hz)
-    sent, stopped = 0, False
+    playing = _Playing(programme, arm, driver, clock, request, report, finished)
     try:
-        driver.connect(set_points[0])
-        start_s = clock.now_s()
-        for sample in set_points:
-            due_s = start_s + sent / rate_hz
-            clock.sleep_until(due_s)
-            stopped = stop_requested()
-            if stopped:
-                break
-            late_s = clock.now_s() - due_s
-            driver.send(sample)
-            if lateness.add(late_s):
-                start_s += late_s
-            sent += 1
-            report(sent, total)
-        resting = set_points[max(sent - 1, 0)]
-        if stopped and sent:
-            resting = _stop(set_points, sent - 1, rate_hz, arm, driver, clock)
-        duration_s = clock.now_s() - start_s
+        driver.connect(programme.park)
+        playing.begin()
+        try:
+            end = playing.run()
+            driver.flush()
+        except _EmergencyStop:
+            driver.emergency_stop()
+            end = End.EMERGENCY_STOPPED
+        except HardwareError:
+            with suppress(HardwareError):
+                playing.note_finished()
+            raise
+        except Exception:
+            playing.tell_nobody()
+            playing.stop()
+            driver.flush()
+            raise
+        playing.note_finished()
+        return playing.outcome(end)
+    except KeyboardInterrupt:
+        driver.emergency_stop()
+        raise
     finally:
         driver.close()
-    return Played(sent, total, duration_s, lateness.worst_s, lateness.total_s / max(sent, 1), lateness.late,
-                  lateness.stalls, stopped, float(tip_at(arm, resting).position_mm[2]))
 
 
-def _stop(set_points: FloatArray, sample: int, rate_hz: float, arm: Arm, driver: Driver, clock: Clock) -> FloatArray:
-    """Brake from the sample sent last, the next being due now, and lift; the posture that the arm is left in."""
-    refine = math.ceil(_STOPPING_RATE_HZ / rate_hz)
-    period_s = 1.0 / (rate_hz * refine)
-    braking = brake(arm, set_points, sample, rate_hz, refine)
-    _send_all(braking, clock.now_s(), period_s, driver, clock)
-    # The arm stands still: working out the lift now costs nothing but a moment's rest.
-    lifting = lift(arm, braking[-1], rate_hz * refine)
-    _send_all(lifting, clock.now_s() + period_s, period_s, driver, clock)
-    resting: FloatArray = np.concatenate((braking, lifting))[-1]
-    return resting
+class _EmergencyStop(Exception):
+    """Someone asked for it."""
 
 
-def _send_all(points: FloatArray, first_s: float, period_s: float, driver: Driver, clock: Clock) -> None:
-    for k, point in enumerate(points):
-        clock.sleep_until(first_s + k * period_s)
-        driver.send(point)
+class _Playing:
+    """Where playing is: `_next` is the index of the set point of the programme to be sent next."""
 
+    def __init__(self, programme: Programme, arm: Arm, driver: Driver, clock: Clock, request: Callable[[], Request],
+                 report: Callable[[Progress], None], finished: Callable[[int], None]) -> None:
+        self._programme, self._arm, self._driver, self._clock = programme, arm, driver, clock
+        self._request, self._report, self._finished = request, report, finished
+        stroke = programme.stroke
+        self._last_of_stroke = np.flatnonzero((stroke != TRAVELLING) & (stroke != np.append(stroke[1:], TRAVELLING)))
+        self._strokes_sent = 0
+        self._unconfirmed: deque[tuple[int, int]] = deque()
+        self._sent_at: deque[tuple[int, int]] = deque()
+        self._next = self._sent = self._ticks = self._reached = 0
+        self._position, self._off_path = programme.park, False
+        self._begin_s = self._start_s = 0.0
+        self._late_s = array("d")
+        self.stalls = 0
 
-class _Lateness:
-    def __init__(self, period_s: float) -> None:
-        self._period_s = period_s
-        self.worst_s = self.total_s = 0.0
-        self.late = self.stalls = 0
+    def begin(self) -> None:
+        self._begin_s = self._start_s = self._clock.now_s()
 
-    def add(self, late_s: float) -> bool:
-        """Note one sample; whether it was a stall."""
-        stall = late_s > _STALL_S
-        self.worst_s = max(self.worst_s, late_s)
-        self.total_s += late_s
-        self.late += late_s > self._period_s
-        self.stalls += stall
-        return stall
+    def run(self) -> End:
+        while self._next < len(self._programme.positions):
+            match self._request():
+                case Request.GO:
+                    self._send(self._programme.positions[self._next])
+                    self._come_to(self._next)
+                case Request.PAUSE:
+                    self._pause()
+                case _:
+                    self.stop()
+                    return End.STOPPED
+        return End.PLAYED
+
+    def tell_nobody(self) -> None:
+        self._report, self._finished = (lambda progress: None), (lambda stroke: None)
+
+    def stop(self) -> None:
+        """Brake, lift, park; where no way to the park pose is found the arm holds with its pen up."""
+        if self._parked():
+            return
+        self._come_to_rest()
+        self._send_all(lift(self._arm, self._position, self._programme.rate_hz))
+        try:
+            way = gentle_move(self._arm, self._position, self._programme.park, self._programme.rate_hz)
+        except PlanError:
+            return
+        self._rested()
+        self._send_all(way)
+
+    def note_finished(self) -> None:
+        """Tell of the strokes that have been drawn, as far as the driver knows."""
+        executed = self._driver.executed()
+        while self._unconfirmed and self._unconfirmed[0][0] <= executed:
+            self._finished(self._unconfirmed.popleft()[1])
+        while self._sent_at and self._sent_at[0][0] <= executed:
+            self._reached = self._sent_at.popleft()[1]
+
+    def outcome(self, end: End) -> Played:
+        late = np.percentile(self._late_s, (50, 99, 100)).tolist() if self._late_s else (0.0, 0.0, 0.0)
+        return Played(end, self._next, len(self._programme.positions), self._clock.now_s() - self._begin_s,
+                      (late[0], late[1], late[2]), self.stalls, float(tip_at(self._arm, self._position).position_mm[2]),
+                      self._parked() and end is not End.EMERGENCY_STOPPED, tuple(self._driver.statistics()))
+
+    def _parked(self) -> bool:
+        return np.allclose(self._position, self._programme.park, rtol=0.0, atol=_THERE)
+
+    def _pause(self) -> None:
+        """Rest with the pen up until the request changes; if it is to go on, be back at full pace."""
+        at = self._come_to_rest()
+        resting, rate_hz = self._position, self._programme.rate_hz
+        self._send_all(lift(self._arm, resting, rate_hz))
+        lowering = np.concatenate((resting[None], lift(self._arm, resting, rate_hz * _LOWERED_SLOWER)))[-2::-1]
+        self._rested()
+        while (request := self._request()) is Request.PAUSE:
+            self._send(self._position)  # a controller that hears nothing would take the host for dead
+            self.note_finished()
+            self._tell(paused=True)
+        if request is not Request.GO:
+            self._off_path = True
+            return
+        self._send_all(lowering)
+        if self._next:
+            ramp = set_off(self._arm, self._programme.positions, at, rate_hz)
+            self._send_all(ramp.points)
+            self._come_to(ramp.end)
+
+    def _come_to_rest(self) -> int:
+        """Brake from the set point sent last; the one where the arm then rests."""
+        if not self._next or self._off_path:
+            return max(self._next - 1, 0)
+        ramp = brake(self._arm, self._programme.positions, self._next - 1, self._programme.rate_hz)
+        self._send_all(ramp.points)
+        self._come_to(ramp.end)
+        self._rested()  # working out the lift now costs nothing but a moment's rest
+        return ramp.end
+
+    def _send_all(self, points: FloatArray) -> None:
+        for point in points:
+            self._send(point)
+
+    def _send(self, point: FloatArray) -> None:
+        """The next set point, whether of the programme or not, at its time."""
+        period_s = 1 / self._programme.rate_hz
+        if not self._driver.ahead_s:
+            due_s = self._start_s + self._ticks * period_s
+            self._clock.sleep_until(due_s)
+            late_s = self._clock.now_s() - due_s
+            self._late_s.append(late_s)
+            if late_s > _STALL_S:
+                self.stalls += 1
+                self._start_s += late_s
+        if self._request() is Request.EMERGENCY_STOP:
+            raise _EmergencyStop
+        self._driver.send(point, period_s)
+        self._position = point
+        self._ticks += 1
+        self._sent += 1
+
+    def _come_to(self, index: int) -> None:
+        """The set point `index` of the programme, or one that stands for it, has been sent."""
+        self._next = index + 1
+        while (self._strokes_sent < len(self._last_of_stroke)
+               and self._last_of_stroke[self._strokes_sent] <= index):
+            stroke = int(self._programme.stroke[self._last_of_stroke[self._strokes_sent]])
+            self._unconfirmed.append((self._sent, stroke))
+            self._strokes_sent += 1
+        self._sent_at.append((self._sent, index))
+        self.note_finished()
+        self._tell(paused=False)
+
+    def _tell(self, *, paused: bool) -> None:
+        programme = self._programme
+        self._report(Progress(self._reached + 1, len(programme.positions), int(programme.stroke[self._reached]),
+                              (len(programme.positions) - 1 - self._reached) / programme.rate_hz, paused))
+
+    def _rested(self) -> None:
+        """The arm stands still: what is sent next is due as soon as it is known."""
+        self._start_s = max(self._start_s, self._clock.now_s() - self._ticks / self._programme.rate_hz)

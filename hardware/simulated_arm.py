@@ -1,11 +1,13 @@
-"""An arm without metal: its joints run after their set points as fast as their speed limits allow."""
+"""An arm without metal: its joints run after their set points as well as its servos can."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
+from hardware.calibration import pulse_calibration
 from hardware.clock import Clock
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
@@ -13,6 +15,18 @@ from planner.errors import HardwareError
 
 _STOP_ALLOWANCE = 1e-6
 """How far beyond a limit, in rad or mm, a set point may be before the simulated joint hits its end stop."""
+_LAG_S = 0.02
+"""Time constant of a real servo's first-order lag: it looks for a new pulse once in so long."""
+_SETTLED_LAGS = 10
+
+
+class Servos(StrEnum):
+    """What the simulated joints are moved by."""
+
+    IDEAL = "ideal"
+    """Nothing between them and their set points but their limits of speed."""
+    REAL = "real"
+    """What the arm file says of its servos, resolution, dead band and backlash, and a lag."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -20,7 +34,8 @@ class Recording:
     """What a simulated arm was told and what it did.
 
     times_s: (n,) clock time of each set point. set_points and positions: (n, n_joints), rad or mm,
-    where the joints were to be and where they stood when told.
+    where the joints were to be and where they stood when told. Each time that everything was awaited
+    adds a row with the last set point and where the joints came to rest.
     """
 
     times_s: FloatArray
@@ -31,10 +46,13 @@ class Recording:
 class SimulatedArm:
     """A driver that moves nothing and remembers everything."""
 
-    def __init__(self, arm: Arm, clock: Clock) -> None:
+    ahead_s = 0.0
+
+    def __init__(self, arm: Arm, clock: Clock, servos: Servos = Servos.IDEAL) -> None:
+        """Errors: HardwareError where real servos are asked for that the arm file does not describe."""
         self._arm, self._clock = arm, clock
+        self._servos = _Ideal(arm) if servos is Servos.IDEAL else _Real(arm)
         self._target: FloatArray | None = None
-        self._position = np.zeros(arm.n_joints)
         self._at_s = 0.0
         self._times_s: list[float] = []
         self._set_points: list[FloatArray] = []
@@ -50,25 +68,54 @@ class SimulatedArm:
     def connected(self) -> bool:
         return self._target is not None
 
-    def connect(self, start: FloatArray) -> None:
-        self._refuse_beyond_stops(start)
-        self._target = self._position = start.copy()
+    def connect(self, pose: FloatArray) -> None:
+        self._refuse_beyond_stops(pose)
+        self._target = pose.copy()
+        self._servos.stand_at(self._target)
         self._at_s = self._clock.now_s()
 
-    def send(self, positions: FloatArray) -> None:
-        if self._target is None:
-            raise HardwareError("the simulated arm is not connected")
+    def send(self, positions: FloatArray, duration_s: float) -> None:
+        """The joints set off at once, as fast as they can, for there is no controller that would spread the way."""
         self._refuse_beyond_stops(positions)
-        now_s = self._clock.now_s()
-        furthest = self._arm.max_velocity * (now_s - self._at_s)
-        self._position = self._position + np.clip(self._target - self._position, -furthest, furthest)
-        self._target, self._at_s = positions.copy(), now_s
-        self._times_s.append(now_s)
-        self._set_points.append(self._target)
-        self._positions.append(self._position)
+        self._follow(self._connected_target())
+        self._target = positions.copy()
+        self._record()
+
+    def executed(self) -> int:
+        return len(self._times_s)
+
+    def flush(self) -> None:
+        target = self._connected_target()
+        self._clock.sleep_until(self._clock.now_s() + self._servos.settling_s(target))
+        self._follow(target)
+        self._record()
+
+    def emergency_stop(self) -> None:
+        if self._target is not None:
+            self._follow(self._target)
+            self._target = self._servos.positions.copy()
 
     def close(self) -> None:
         self._target = None
+
+    def statistics(self) -> list[str]:
+        return []
+
+    def _connected_target(self) -> FloatArray:
+        if self._target is None:
+            raise HardwareError("the simulated arm is not connected")
+        return self._target
+
+    def _follow(self, target: FloatArray) -> None:
+        """What the joints have done since they were looked at last."""
+        now_s = self._clock.now_s()
+        self._servos.run(target, now_s - self._at_s)
+        self._at_s = now_s
+
+    def _record(self) -> None:
+        self._times_s.append(self._at_s)
+        self._set_points.append(self._connected_target())
+        self._positions.append(self._servos.positions.copy())
 
     def _refuse_beyond_stops(self, positions: FloatArray) -> None:
         beyond = (positions < self._arm.minimum - _STOP_ALLOWANCE) | (positions > self._arm.maximum + _STOP_ALLOWANCE)
@@ -77,3 +124,53 @@ class SimulatedArm:
             value = self._arm.to_file_units(positions)[joint]
             raise HardwareError(f"joint {self._arm.joints[joint].name} was sent to {value:g} "
                                 f"{self._arm.joints[joint].file_unit}, into its end stop")
+
+
+class _Ideal:
+    """Joints that are limited in speed and in nothing else. positions: (n_joints,), rad or mm."""
+
+    def __init__(self, arm: Arm) -> None:
+        self._max_velocity = arm.max_velocity
+        self.positions = np.zeros(arm.n_joints)
+
+    def stand_at(self, positions: FloatArray) -> None:
+        self.positions = positions.copy()
+
+    def run(self, target: FloatArray, duration_s: float) -> None:
+        furthest = self._max_velocity * duration_s
+        self.positions = self.positions + np.clip(target - self.positions, -furthest, furthest)
+
+    def settling_s(self, target: FloatArray) -> float:
+        return float(np.max(np.abs(target - self.positions) / self._max_velocity))
+
+
+class _Real:
+    """Joints behind servos: a pulse of limited resolution, a motor that runs after what is beyond the dead band with
+    a lag, and gears with play, inside which the joint stays where it is."""
+
+    def __init__(self, arm: Arm) -> None:
+        self._calibration = pulse_calibration(arm)
+        servos = [joint.servo for joint in arm.joints if joint.servo is not None]
+        self._resolution_us = np.array([servo.resolution_us for servo in servos])
+        self._dead_band_us = np.array([servo.dead_band_us for servo in servos])
+        self._play = np.array([servo.backlash for servo in servos])
+        self._max_velocity = arm.max_velocity
+        self._motors = self.positions = np.zeros(arm.n_joints)
+
+    def stand_at(self, positions: FloatArray) -> None:
+        self._motors = self.positions = positions.copy()
+
+    def run(self, target: FloatArray, duration_s: float) -> None:
+        pulses_us = self._calibration.to_servos(target)
+        step_us = np.where(self._resolution_us > 0, self._resolution_us, 1.0)
+        pulses_us = np.where(self._resolution_us > 0, np.round(pulses_us / step_us) * step_us, pulses_us)
+        wanted = self._calibration.to_joints(pulses_us)
+        dead_band = np.abs(self._calibration.to_joints(pulses_us + self._dead_band_us) - wanted)
+        error = wanted - self._motors
+        pull = np.sign(error) * np.maximum(np.abs(error) - dead_band, 0.0)
+        furthest = self._max_velocity * duration_s
+        self._motors = self._motors + np.clip(-np.expm1(-duration_s / _LAG_S) * pull, -furthest, furthest)
+        self.positions = np.clip(self.positions, self._motors - self._play / 2, self._motors + self._play / 2)
+
+    def settling_s(self, target: FloatArray) -> float:
+        return float(np.max(np.abs(target - self._motors) / self._max_velocity)) + _SETTLED_LAGS * _LAG_S

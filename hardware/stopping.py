@@ -1,12 +1,15 @@
-"""Stopping in the middle of a drawing: brake along the planned path, then take the pen straight up.
+"""Stopping in the middle of a drawing: brake along the planned path, then take the pen straight up; and going on.
 
 Braking along the path leaves no ink where none was planned, and lifting from rest keeps the two motions
-apart, so that each can be held within the arm's limits.
+apart, so that each can be held within the arm's limits. Both ends of a stop are at samples of the path, so
+that what follows is played from the very samples that were planned.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,9 +18,9 @@ from hardware.vertical_lift import vertical_lift
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 
-_BRAKING_S = (0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8)
+_RAMPS_S = (0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8)
 _ALLOWANCE = 1.02
-"""By how much a braking sequence may seem to exceed a limit: what interpolation between samples adds."""
+"""By how much a change of pace may seem to exceed a limit: what interpolation between samples adds."""
 _MARGIN = 1.05
 _LONGEST_LIFT_S = 1.0
 """No lift is slowed down beyond this: what asks for more is a bend where a joint runs into its limit."""
@@ -26,32 +29,65 @@ _DEGREE = 6
 """Of the polynomial in height through the postures of a lift, smooth at any rate."""
 
 
-def brake(arm: Arm, path: FloatArray, sample: int, rate_hz: float, refine: int) -> FloatArray:
-    """Set points (n, n_joints), `refine` for each sample period, that come to rest along `path`.
+@dataclass(frozen=True, eq=False, slots=True)
+class Ramp:
+    """A change of pace along a path: set points (n, n_joints) and `at` (n,), the fractional indices that they have
+    in the path; the last is that of a sample."""
 
-    path: (n_samples, n_joints) as being played at `rate_hz`; `sample`: the one sent last. The pace along the
-    path falls from 1 to 0 as 1 - 3u^2 + 2u^3; the shortest of a few durations that keeps velocities,
+    points: FloatArray
+    at: FloatArray
+
+    @property
+    def end(self) -> int:
+        """The sample of the path that the ramp ends in."""
+        return round(float(self.at[-1]))
+
+
+def brake(arm: Arm, path: FloatArray, sample: int, rate_hz: float) -> Ramp:
+    """From full pace to rest along `path` (n_samples, n_joints), played at `rate_hz`; `sample` is the one sent last.
+
+    The pace falls from 1 to 0 as 1 - 3u^2 + 2u^3; the shortest of a few durations that keeps velocities,
     accelerations and jerks within limits is taken, and the longest where the path itself is at its limits.
     """
-    period_s = 1.0 / (rate_hz * refine)
-    before = sample + np.arange(-3, 1) / refine
-    points = np.empty((0, arm.n_joints))
-    for duration_s in _BRAKING_S:
-        n = math.ceil(duration_s / period_s)
+    before = interpolate(path, sample + np.arange(-3.0, 1.0))
+    for n in _even_lengths(rate_hz):
         u = np.arange(1, n + 1) / n
-        points = interpolate(path, sample + (u - u**3 + u**4 / 2) * n / refine)
-        if slow_down(arm, np.concatenate((interpolate(path, before), points)), period_s) <= _ALLOWANCE:
+        ramp = _along(arm, path, sample + n * (u - u**3 + u**4 / 2))
+        if slow_down(arm, np.concatenate((before, ramp.points)), 1 / rate_hz) <= _ALLOWANCE:
             break
-    return np.clip(points, arm.minimum, arm.maximum)
+    return ramp
 
 
-def lift(arm: Arm, start: FloatArray, rate_hz: float) -> FloatArray:
-    """Set points (n, n_joints) at `rate_hz` from rest at `start` straight up to the arm's lift height, and to rest.
+def set_off(arm: Arm, path: FloatArray, sample: int, rate_hz: float) -> Ramp:
+    """From rest at `sample` to full pace along `path`: braking, seen backwards in time."""
+    rest = path[sample][None]
+    for n in _even_lengths(rate_hz):
+        u = np.arange(1, n + 1) / n
+        ramp = _along(arm, path, sample + n * (u**3 - u**4 / 2))
+        after = interpolate(path, sample + n / 2 + np.arange(1.0, 5.0))
+        if slow_down(arm, np.concatenate((rest, ramp.points, after))[::-1], 1 / rate_hz) <= _ALLOWANCE:
+            break
+    return ramp
+
+
+def _even_lengths(rate_hz: float) -> Iterator[int]:
+    """How many set points a ramp may have: even numbers, for on average a ramp goes at half the pace."""
+    return (2 * math.ceil(duration_s * rate_hz / 2) for duration_s in _RAMPS_S)
+
+
+def _along(arm: Arm, path: FloatArray, at: FloatArray) -> Ramp:
+    at = np.clip(at, 0.0, len(path) - 1.0)
+    return Ramp(np.clip(interpolate(path, at), arm.minimum, arm.maximum), at)
+
+
+def lift(arm: Arm, start: FloatArray, rate_hz: float, to_mm: float | None = None) -> FloatArray:
+    """Set points (n, n_joints) at `rate_hz` from rest at `start` straight up to rest at the height `to_mm` of the tip,
+    the arm's lift height if None.
 
     The height follows 10u^3 - 15u^4 + 6u^5, slowed down until the joints are within their limits (for a
     second at most). Empty where the pen is up already, and where the arm cannot rise.
     """
-    height_mm = arm.pen.lift_mm - float(tip_at(arm, start).position_mm[2])
+    height_mm = (arm.pen.lift_mm if to_mm is None else to_mm) - float(tip_at(arm, start).position_mm[2])
     postures = vertical_lift(arm, start, height_mm) if height_mm > _LIFTED_MM else start[None]
     if len(postures) < 2:
         return np.empty((0, arm.n_joints))

@@ -1,4 +1,4 @@
-"""Where the pen is: forward kinematics and Jacobian of one posture, in plain NumPy."""
+"""Where the pen is: forward kinematics of many postures, and the Jacobian of one, in plain NumPy."""
 
 from __future__ import annotations
 
@@ -43,3 +43,23 @@ def tip_at(arm: Arm, joints: FloatArray) -> Tip:
     z, turns = np.array(joint_axes), np.array([joint.kind is JointKind.REVOLUTE for joint in arm.joints])[:, None]
     return Tip(origin, axis, np.where(turns, np.cross(z, origin - np.array(joint_origins)), z).T,
                np.where(turns, np.cross(z, axis), 0.0).T)
+
+
+def link_nodes_mm(arm: Arm, positions: FloatArray) -> FloatArray:
+    """(n, 2 n_joints, 3) where links bend at `positions` (n, n_joints), rad or mm: for each joint the end of its
+    offset d and the end of its length a, the last of all being the tip. The DH rows' product, as in `tip_at`."""
+    rotation, origin = np.eye(3), np.zeros((len(positions), 3))
+    nodes = []
+    for joint, value in zip(arm.joints, positions.T, strict=True):
+        revolute = joint.kind is JointKind.REVOLUTE
+        theta = joint.theta_rad + (value if revolute else np.zeros_like(value))
+        d_mm = joint.d_mm + (np.zeros_like(value) if revolute else value)
+        ct, st, ca, sa = np.cos(theta), np.sin(theta), cos(joint.alpha_rad), sin(joint.alpha_rad)
+        bend = origin + rotation[..., 2] * d_mm[:, None]
+        length = np.stack((joint.a_mm * ct, joint.a_mm * st, np.zeros_like(ct)), axis=-1)
+        origin = bend + (rotation @ length[..., None])[..., 0]
+        rotation = rotation @ np.stack((
+            np.stack((ct, -st * ca, st * sa), axis=-1), np.stack((st, ct * ca, -ct * sa), axis=-1),
+            np.broadcast_to([0.0, sa, ca], (len(positions), 3))), axis=-2)
+        nodes += [bend, origin]
+    return np.stack(nodes, axis=1)

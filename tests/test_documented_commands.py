@@ -18,15 +18,15 @@ NOT_RUN = "<!-- not run:"
 WRITTEN = {"-o", "--output", "--report", "--json", "--plot", "--picture"}
 """Options that name what a command writes."""
 
-_FENCE = re.compile(r"^```sh\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+_FENCE = re.compile(r"^( *)```sh\n(.*?)^\1```$", re.MULTILINE | re.DOTALL)
 
 
 def commands_of(page: Path) -> list[list[str]]:
     """The commands of a page that are to be run, split into words. A block is passed over where the line above it
     says so, and why."""
     text = page.read_text(encoding="utf-8")
-    blocks = [match[1].replace("\\\n", " ") for match in _FENCE.finditer(text)
-              if not text[:match.start()].rstrip().splitlines()[-1].startswith(NOT_RUN)]
+    blocks = [match[2].replace("\\\n", " ") for match in _FENCE.finditer(text)
+              if not text[:match.start()].rstrip().splitlines()[-1].lstrip().startswith(NOT_RUN)]
     return [words for block in blocks for line in block.splitlines() if (words := shlex.split(line, comments=True))]
 
 

@@ -37,14 +37,34 @@ class PenHold(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Servo:
-    """The servo behind a joint, where known: pulse = pulse_at_zero_us + us_per_deg * angle."""
+    """The servo behind a joint, where it is one that is told by pulses.
 
-    pulse_at_zero_us: float
-    us_per_deg: float
+    curve: (position, pulse in us), ascending in position and strictly monotone in pulse, two points where it is a
+    straight line. Its positions are the servo's own, rad or mm: `direction` times the joint's. trim_us is added to
+    what the curve gives. backlash: rad or mm.
+    """
+
+    channel: int
+    curve: tuple[tuple[float, float], ...]
+    direction: int
+    trim_us: float
     pulse_range_us: tuple[float, float]
     resolution_us: float
     dead_band_us: float
-    backlash_deg: float
+    backlash: float
+
+
+@dataclass(frozen=True, slots=True)
+class BusServo:
+    """The servo behind a joint, where it is one on a bus: count = count_at_zero + counts_per_unit * position.
+
+    Position in rad or mm; `id` is its number on the bus.
+    """
+
+    id: int
+    count_at_zero: float
+    counts_per_unit: float
+    count_range: tuple[int, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +86,7 @@ class Joint:
     max_acceleration: float
     max_jerk: float
     servo: Servo | None = None
+    bus: BusServo | None = None
     thickness_mm: float | None = None
 
     @property
@@ -113,7 +134,10 @@ class Workspace:
 
 @dataclass(frozen=True, eq=False)
 class Arm:
-    """A checked arm. Joint arrays are in chain order, in rad or mm; closed_form names its family, if any."""
+    """A checked arm. Joint arrays are in chain order, in rad or mm; closed_form names its family, if any.
+
+    park: (n_joints,) where the arm rests when it is not used, if the builder says.
+    """
 
     name: str
     source: str
@@ -122,6 +146,7 @@ class Arm:
     pen: Pen
     workspace: Workspace
     closed_form: str | None = None
+    park: FloatArray | None = None
 
     @property
     def n_joints(self) -> int:

@@ -5,19 +5,29 @@ from __future__ import annotations
 import math
 import tomllib
 from abc import abstractmethod
+from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+import numpy as np
+from pydantic import AfterValidator, BaseModel, Field, ValidationError, model_validator
 
-from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Servo, Workspace
+from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Workspace
+from planner.arms.file_section import NotNegative, Number, Positive, Section
+from planner.arms.servo_section import (
+    SlidingBusSection,
+    SlidingServoSection,
+    TurningBusSection,
+    TurningServoSection,
+)
+from planner.arrays import FloatArray, frozen
 from planner.errors import ArmFileError, UnknownArm
 
 DEFAULT_ARM = "drawing_arm"
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Number = Annotated[float, Field(allow_inf_nan=False)]
+_ROUNDING = 1e-9
+"""Degrees that converting to radians and back may cost."""
 
 
 def _is_column_name(name: str) -> str:
@@ -26,36 +36,14 @@ def _is_column_name(name: str) -> str:
     return name
 
 
-def _ascending(pulses_us: list[float]) -> list[float]:
-    if pulses_us[0] >= pulses_us[1]:
-        raise ValueError(f"{pulses_us[0]:g} is not below {pulses_us[1]:g}")
-    return pulses_us
-
-
 Name = Annotated[str, AfterValidator(_is_column_name)]
-PulseRange = Annotated[list[Positive], Field(min_length=2, max_length=2), AfterValidator(_ascending)]
 
-
-class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-
-class _ServoSection(_Section):
-    pulse_at_zero_us: Number
-    us_per_deg: Number
-    pulse_range_us: PulseRange
-    resolution_us: NotNegative = 1.0
-    dead_band_us: NotNegative = 0.0
-    backlash_deg: NotNegative = 0.0
-
-
-class _JointBase(_Section):
+class _JointBase(Section):
     name: Name
     theta_deg: Number = 0.0
     d_mm: Number = 0.0
     a_mm: Number = 0.0
     alpha_deg: Number = 0.0
-    servo: _ServoSection | None = None
     thickness_mm: Positive | None = None
 
     @property
@@ -78,6 +66,8 @@ class _RevoluteSection(_JointBase):
     max_velocity_deg_s: Positive
     max_acceleration_deg_s2: Positive
     max_jerk_deg_s3: Positive
+    servo: TurningServoSection | None = None
+    bus: TurningBusSection | None = None
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -97,19 +87,21 @@ class _PrismaticSection(_JointBase):
     max_velocity_mm_s: Positive
     max_acceleration_mm_s2: Positive
     max_jerk_mm_s3: Positive
+    servo: SlidingServoSection | None = None
+    bus: SlidingBusSection | None = None
 
     @property
     def limits(self) -> tuple[float, float]:
         return self.min_mm, self.max_mm
 
 
-class _CouplingSection(_Section):
+class _CouplingSection(Section):
     joint: str
     constant_deg: Number
     coefficients: dict[str, Number]
 
 
-class _PenSection(_Section):
+class _PenSection(Section):
     hold: Literal["coupling", "construction", "tool_axis", "free"]
     tool_axis: Annotated[list[Number], Field(min_length=3, max_length=3)] = Field(default=[1.0, 0.0, 0.0])
     lift_mm: Positive
@@ -124,12 +116,12 @@ class _PenSection(_Section):
         return self
 
 
-class _WorkspaceSection(_Section):
+class _WorkspaceSection(Section):
     inner_radius_mm: NotNegative
     min_tip_speed_mm_s: Positive = 80.0
 
 
-class _ArmSection(_Section):
+class _ArmSection(Section):
     name: Name
     source: str
     closed_form: Literal["drawing_arm", "scara", "three_joint", "six_joint", "stanford"] | None = None
@@ -138,7 +130,8 @@ class _ArmSection(_Section):
     joints: Annotated[
         list[Annotated[_RevoluteSection | _PrismaticSection, Field(discriminator="kind")]], Field(min_length=1)
     ]
-    coupling: list[_CouplingSection] = []
+    coupling: list[_CouplingSection] = Field(default=[])
+    park: dict[str, Number] | None = None
 
 
 def arms_folder() -> Path:
@@ -182,7 +175,14 @@ def read_arm_file(path: Path) -> Arm:
     faults = _contradictions(section)
     if faults:
         raise ArmFileError(str(path), faults)
-    return _arm(section)
+    arm = _arm(section)
+    if section.park is None:
+        return arm
+    parked = _parked(arm, section.park)
+    faults = _beyond_limits(arm, parked)
+    if faults:
+        raise ArmFileError(str(path), faults)
+    return replace(arm, park=parked)
 
 
 def _fault(detail: Any) -> str:
@@ -220,26 +220,48 @@ def _contradictions(section: _ArmSection) -> list[str]:
                    for name in coupling.coefficients if name in driven]
     if section.pen.hold == "coupling" and not section.coupling:
         faults.append("pen.hold: 'coupling' needs at least one [[coupling]]")
+    faults += _shared_lines(section)
+    if section.park is not None:
+        faults += _misparked(section.park, [name for name in names if name not in driven], names)
     return faults
 
 
-def _joint(section: _RevoluteSection | _PrismaticSection) -> Joint:
+def _shared_lines(section: _ArmSection) -> list[str]:
+    """Joints that would be moved by each other's pulses or packets."""
+    channels = {index: index if joint.servo.channel is None else joint.servo.channel
+                for index, joint in enumerate(section.joints) if joint.servo is not None}
+    ids = {index: joint.bus.id for index, joint in enumerate(section.joints) if joint.bus is not None}
+    return [f"joints[{index}].{key}: {value} is another joint's too"
+            for key, values in (("servo.channel", channels), ("bus.id", ids))
+            for index, value in values.items() if Counter(values.values())[value] > 1]
+
+
+def _misparked(park: dict[str, float], free: list[str], names: list[str]) -> list[str]:
+    faults = [f"park.{name}: missing" for name in free if name not in park]
+    for name in park:
+        if name not in names:
+            faults.append(f"park: there is no joint '{name}' (joints: {', '.join(names)})")
+        elif name not in free:
+            faults.append(f"park.{name}: follows from its coupling; leave it out")
+    return faults
+
+
+def _joint(place: int, section: _RevoluteSection | _PrismaticSection) -> Joint:
     if isinstance(section, _RevoluteSection):
+        unit = math.radians(1.0)
         limits = (section.min_deg, section.max_deg, section.max_velocity_deg_s,
                   section.max_acceleration_deg_s2, section.max_jerk_deg_s3)
         minimum, maximum, velocity, acceleration, jerk = (math.radians(value) for value in limits)
     else:
+        unit = 1.0
         minimum, maximum, velocity, acceleration, jerk = (
             section.min_mm, section.max_mm, section.max_velocity_mm_s,
             section.max_acceleration_mm_s2, section.max_jerk_mm_s3)
-    servo = None
-    if section.servo is not None:
-        low, high = section.servo.pulse_range_us
-        servo = Servo(section.servo.pulse_at_zero_us, section.servo.us_per_deg, (low, high),
-                      section.servo.resolution_us, section.servo.dead_band_us, section.servo.backlash_deg)
     return Joint(section.name, JointKind(section.kind), math.radians(section.theta_deg), section.d_mm,
-                 section.a_mm, math.radians(section.alpha_deg), minimum, maximum, velocity, acceleration,
-                 jerk, servo, section.thickness_mm)
+                 section.a_mm, math.radians(section.alpha_deg), minimum, maximum, velocity, acceleration, jerk,
+                 None if section.servo is None else section.servo.servo(place, unit),
+                 None if section.bus is None else section.bus.servo(unit),
+                 section.thickness_mm)
 
 
 def _arm(section: _ArmSection) -> Arm:
@@ -254,9 +276,21 @@ def _arm(section: _ArmSection) -> Arm:
     return Arm(
         name=section.name,
         source=section.source,
-        joints=tuple(_joint(joint) for joint in section.joints),
+        joints=tuple(_joint(place, joint) for place, joint in enumerate(section.joints)),
         couplings=couplings,
         pen=Pen(PenHold(section.pen.hold), (x, y, z), section.pen.lift_mm, section.pen.clearance_mm),
         workspace=Workspace(section.workspace.inner_radius_mm, section.workspace.min_tip_speed_mm_s),
         closed_form=section.closed_form,
     )
+
+def _parked(arm: Arm, park: dict[str, float]) -> FloatArray:
+    """(n_joints,) rad or mm; couplings fill in what they drive."""
+    free = [arm.joints[index] for index in arm.free_joints]
+    return frozen(arm.complete(np.array([park[joint.name] * joint.per_file_unit for joint in free])))
+
+
+def _beyond_limits(arm: Arm, parked: FloatArray) -> list[str]:
+    values, low, high = arm.to_file_units(np.stack((parked, arm.minimum, arm.maximum)))
+    return [f"park.{joint.name}: {value:g} {joint.file_unit} is outside its limits of {least:g} to {most:g}"
+            for joint, value, least, most in zip(arm.joints, values, low, high, strict=True)
+            if not least - _ROUNDING <= value <= most + _ROUNDING]

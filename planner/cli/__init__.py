@@ -67,6 +67,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.check import check
 
             return check(rest)
+        case "ports":
+            from planner.cli.ports import ports
+
+            return ports(rest)
         case "arm":
             from planner.cli.arm import arm
 

@@ -29,6 +29,7 @@ Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a t
 other commands (each has its own --help; a drawing of that name is planned as ./NAME):
   plan batch FOLDER         plan every drawing of a folder
   plan run traj.csv         play a trajectory on the simulated arm
+  plan ports                list the serial devices that are plugged in
   plan check traj.csv       an independent verdict on a trajectory
   plan plot traj.csv -o F   pictures of a trajectory
   plan arm [NAME]           list the arms, or describe one"""

@@ -102,9 +102,36 @@ def test_what_is_left_out_has_its_documented_value(read: Reader) -> None:
     assert (arm.pen.clearance_mm, arm.pen.hold, arm.pen.tool_axis) == (1.0, PenHold.COUPLING, (0.0, 0.0, -1.0))
     servo = arm.joints[0].servo
     assert servo is not None
-    assert (servo.resolution_us, servo.dead_band_us, servo.backlash_deg, servo.us_per_deg) == (1, 0, 1, -10)
-    assert arm.joints[1].servo is None
+    assert (servo.channel, servo.direction, servo.trim_us, servo.resolution_us, servo.dead_band_us) == (0, 1, 0, 1, 0)
+    assert servo.backlash == pytest.approx(math.radians(1))
+    assert servo.curve == ((pytest.approx(-math.pi / 2), 2400), (pytest.approx(math.pi / 2), 600))
+    assert (arm.joints[1].servo, arm.joints[1].bus, arm.park) == (None, None, None)
     assert all(joint.thickness_mm is None for joint in arm.joints)
+
+
+def test_servos_of_slides_and_buses_are_kept_per_inner_unit(read: Reader) -> None:
+    arm = read(("max_jerk_mm_s3 = 20000.0", "max_jerk_mm_s3 = 20000.0\nservo = { channel = 7, table = [[10, 900.0], "
+                "[50, 1500], [80, 1700]], direction = -1, trim_us = 4, pulse_range_us = [800.0, 1800.0], "
+                "backlash_mm = 0.2 }\nbus = { id = 3, count_at_zero = 100.5, counts_per_mm = -20.0, "
+                "count_range = [-4000, 90] }"),
+               ("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 1, count_at_zero = 2048, counts_per_deg = 10, "
+                "count_range = [0, 4095] }"))
+    slide, wrist = arm.joints[1:]
+    assert slide.servo is not None
+    assert slide.bus is not None
+    assert wrist.bus is not None
+    assert slide.servo.curve == ((10, 900), (50, 1500), (80, 1700))
+    assert (slide.servo.channel, slide.servo.direction, slide.servo.trim_us, slide.servo.backlash) == (7, -1, 4, 0.2)
+    assert (slide.bus.id, slide.bus.count_at_zero, slide.bus.counts_per_unit, slide.bus.count_range) == (
+        3, 100.5, -20, (-4000, 90))
+    assert wrist.bus.counts_per_unit == pytest.approx(10 * 180 / math.pi)
+
+
+def test_the_parked_pose_is_completed_by_couplings(read: Reader) -> None:
+    arm = read(("[[coupling]]", "[park]\nreach = 20\nwaist = -30.0\n\n[[coupling]]"))
+    assert arm.park is not None
+    assert arm.to_file_units(arm.park) == pytest.approx([-30, 20, -75])
+    assert not arm.park.flags.writeable
 
 
 def test_couplings_complete_a_posture(read: Reader) -> None:
@@ -113,6 +140,8 @@ def test_couplings_complete_a_posture(read: Reader) -> None:
     complete = arm.to_file_units(arm.complete(arm.from_file_units([40.0, 30.0, 0.0])[:2]))
     assert complete == pytest.approx([40.0, 30.0, -110.0])
 
+
+LINE = "pulse_at_zero_us = 1500.0, us_per_deg = -10.0"
 
 FAULTS = {
     "unknown key": (("lift_mm = 4.0", "lift_mm = 4.0\nlift_cm = 1"), ("pen.lift_cm: unknown key (value: 1)",)),
@@ -137,6 +166,36 @@ FAULTS = {
     "name twice": (('name = "reach"', 'name = "waist"'), ("joints[1].name: 'waist' is used twice",)),
     "pulses swapped": (("[600.0, 2400.0]", "[2400.0, 600.0]"), ("joints[0].servo.pulse_range_us: 2400", "600")),
     "three pulses": (("[600.0, 2400.0]", "[600.0, 900.0, 2400.0]"), ("joints[0].servo.pulse_range_us:",)),
+    "neither line nor table": (("us_per_deg = -10.0, ", ""),
+                               ("joints[0].servo: needs pulse_at_zero_us and us_per_deg",)),
+    "line and table": (("us_per_deg = -10.0", "us_per_deg = -10.0, table = [[0, 600], [9, 700]]"),
+                       ("joints[0].servo: a table stands in place of",)),
+    "a servo that stands still": (("us_per_deg = -10.0", "us_per_deg = 0"), ("joints[0].servo: us_per_deg 0",)),
+    "positions that turn back": ((LINE, "table = [[0, 600], [9, 700], [9, 800]]"),
+                                 ("joints[0].servo.table: its positions have to go up, not from 9 to 9",)),
+    "pulses that turn back": ((LINE, "table = [[0, 600], [9, 700], [10, 650]]"),
+                              ("joints[0].servo.table: its pulses have to go one way, not from 700 to 650 us at 10",)),
+    "pulses that stay": ((LINE, "table = [[0, 600], [9, 600]]"), ("joints[0].servo.table: its pulses", "600 to 600")),
+    "one row": ((LINE, "table = [[0, 600]]"), ("joints[0].servo.table:",)),
+    "direction 2": (("us_per_deg = -10.0", "us_per_deg = -10.0, direction = 2"), ("joints[0].servo.direction:", "2")),
+    "a slide's servo in degrees": (("max_jerk_mm_s3 = 20000.0", "max_jerk_mm_s3 = 20000.0\nservo = { table = [[0, 600],"
+                                    " [9, 700]], pulse_range_us = [500, 800], backlash_deg = 1 }"),
+                                   ("joints[1].servo.backlash_deg: unknown key",)),
+    "counts swapped": (("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 1, count_at_zero = 0, counts_per_deg = 1, "
+                        "count_range = [9, 3] }"), ("joints[2].bus.count_range: 9 is not below 3",)),
+    "a bus servo that stands still": (("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 1, count_at_zero = 0, "
+                                       "counts_per_deg = 0, count_range = [3, 9] }"), ("joints[2].bus: 0 counts",)),
+    "broadcast as an id": (("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 254, count_at_zero = 0, counts_per_deg = 1, "
+                            "count_range = [3, 9] }"), ("joints[2].bus.id:", "254")),
+    "parked in part": (("[[coupling]]", "[park]\nwaist = 0\n[[coupling]]"), ("park.reach: missing",)),
+    "parked twice over": (("[[coupling]]", "[park]\nwaist = 0\nreach = 20\nwrist = -90\n[[coupling]]"),
+                          ("park.wrist: follows from its coupling",)),
+    "parks nothing": (("[[coupling]]", "[park]\nwaist = 0\nreach = 20\nhips = 0\n[[coupling]]"),
+                      ("park: there is no joint 'hips'",)),
+    "parked beyond a limit": (("[[coupling]]", "[park]\nwaist = 0\nreach = 90\n[[coupling]]"),
+                              ("park.reach: 90 mm is outside its limits of 10 to 80",)),
+    "parked where the coupling cannot follow": (("[[coupling]]", "[park]\nwaist = 30\nreach = 20\n[[coupling]]"),
+                                                ("park.wrist: -105 deg is outside",)),
     "coupled to nothing": (("{ waist = -0.5 }", "{ hips = -0.5 }"), ("coupling[0]: there is no joint 'hips'", "waist")),
     "couples nothing": (('joint = "wrist"', 'joint = "hand"'), ("coupling[0]: there is no joint 'hand'",)),
     "coupled to a slide": (("{ waist = -0.5 }", "{ reach = -0.5 }"), ("coupling[0]: joint 'reach' is prismatic",)),
@@ -184,6 +243,14 @@ def test_faults_in_form_do_not_hide_faults_in_meaning(read: Reader) -> None:
         read(("lift_mm = 4.0", "lift_mm = 0.5"), ("min_mm = 10.0", "min_mm = 90.0"), ("a_mm = 25.0", "a_m = 0.025"),
              ("[600.0, 2400.0]", "[2400.0, 600.0]"))
     assert len(caught.value.faults) == 4
+
+
+def test_two_joints_on_one_channel_are_told_of_both(read: Reader) -> None:
+    servo = "servo = { channel = 0, table = [[0, 600], [9, 700]], pulse_range_us = [500, 800] }"
+    with pytest.raises(ArmFileError) as caught:
+        read(("a_mm = 25.0", f"a_mm = 25.0\n{servo}"))
+    assert caught.value.faults == ("joints[0].servo.channel: 0 is another joint's too",
+                                   "joints[2].servo.channel: 0 is another joint's too")
 
 
 def test_hold_by_coupling_needs_one(read: Reader) -> None:

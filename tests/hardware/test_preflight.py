@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hardware.preflight import set_points
+from hardware.calibration import pulse_calibration
+from hardware.preflight import servo_values, set_points
 from planner.arms.arm import Arm
 from planner.errors import TrajectoryFileError
-from planner.trajectory import Trajectory, read_trajectory, write_trajectory
+from planner.trajectory import TRAVELLING, Trajectory, read_trajectory, write_trajectory
 
 SAMPLE = 20
 
@@ -36,6 +37,8 @@ def test_a_sound_trajectory_becomes_set_points_in_inner_units(
 @pytest.mark.parametrize(("new", "reason"), [
     ("190.0", r"joint q2 at 190 deg is outside its limits of 0 to 180 deg"),
     ("66.0", r"joint q2 comes here at 600 deg/s; its limit is 400 deg/s"),
+    ("61.0", r"joint q2 accelerates here by 1e\+04 deg/s2; its limit is 5000 deg/s2"),
+    ("60.2", r"joint q2 is jerked here by 2e\+05 deg/s3; its limit is 100000 deg/s3"),
 ])
 def test_an_edited_cell_is_named_by_line_and_joint(
         arm: Arm, arc: Callable[..., Trajectory], tmp_path: Path, new: str, reason: str) -> None:
@@ -61,9 +64,46 @@ def test_another_arms_joints_are_refused(arm: Arm, arc: Callable[..., Trajectory
         set_points(foreign, arm, tmp_path)
 
 
-def test_rounding_at_a_limit_is_no_fault_and_is_clipped(
+def test_a_file_that_was_cut_off_is_refused(arm: Arm, arc: Callable[..., Trajectory], tmp_path: Path) -> None:
+    trajectory = arc(4.0)  # slow: the joints are well within their limits where it is cut
+    cut = replace(trajectory, positions=trajectory.positions[:60], pen=trajectory.pen[:60],
+                  stroke=trajectory.stroke[:60])
+    with pytest.raises(TrajectoryFileError, match=r"joint q1 is moving, .* at the end \(is .* cut off\?\)") as end:
+        set_points(cut, arm, tmp_path)
+    assert end.value.line == cut.line(59)
+
+
+def test_an_arm_of_another_shape_is_refused_though_its_joints_have_the_same_names(
         arm: Arm, arc: Callable[..., Trajectory], tmp_path: Path) -> None:
     trajectory = arc()
+    longer = replace(arm, name="longer", joints=(replace(arm.joints[0], d_mm=52.0), *arm.joints[1:]))
+    with pytest.raises(TrajectoryFileError, match=r"pen of arm 'longer' would be 2 mm above .* for arm 'drawing_arm'"):
+        set_points(trajectory, longer, tmp_path)
+
+
+@pytest.mark.parametrize("sample", [0, 1, 20, 59, 60])
+def test_a_pulse_outside_its_servos_range_is_named_by_line(
+        arm: Arm, arc: Callable[..., Trajectory], tmp_path: Path, sample: int) -> None:
+    trajectory = arc()
+    servo = arm.joints[0].servo
+    assert servo is not None
+    positions = arm.from_file_units(trajectory.positions)
+    within = pulse_calibration(arm).to_servos(positions)[:, 0]
+    np.testing.assert_array_equal(
+        servo_values(pulse_calibration(arm), positions, trajectory, tmp_path)[:, 0], within)
+    # q1 only ever goes on: a range that ends between two samples is left at the second.
+    low, high = np.sort(np.append(within, within[0] - np.sign(within[-1] - within[0])))[[0, -1]]
+    edge = within[sample] - np.sign(within[-1] - within[0]) * 1e-4
+    ends = (low - 1, edge) if within[-1] > within[0] else (edge, high + 1)
+    narrow = replace(arm, joints=(replace(arm.joints[0], servo=replace(servo, pulse_range_us=ends)), *arm.joints[1:]))
+    with pytest.raises(TrajectoryFileError, match=r"joint q1 at .* deg asks its servo for .* outside its range") as out:
+        servo_values(pulse_calibration(narrow), positions, trajectory, tmp_path)
+    assert out.value.line == trajectory.line(sample)
+
+
+def test_rounding_at_a_limit_is_no_fault_and_is_clipped(
+        arm: Arm, arc: Callable[..., Trajectory], tmp_path: Path) -> None:
+    trajectory = replace(arc(), pen=np.zeros(61, dtype=bool), stroke=np.full(61, TRAVELLING))
     positions = trajectory.positions.copy()
     positions[:, 1], positions[:, 2] = 180.0000005, -90.0
     positions[:, 4] = -90.0 - positions[:, 1:4].sum(axis=1)

@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hardware.stopping import brake, interpolate, lift, slow_down
+from hardware.stopping import brake, interpolate, lift, set_off, slow_down
 from hardware.tip import tip_at
 from planner.arms.arm import Arm
+from planner.arrays import FloatArray
 from planner.trajectory import Trajectory
 
 RATE_HZ = 100.0
@@ -29,20 +30,33 @@ def test_interpolation_meets_the_samples_and_rests_outside() -> None:
 
 
 @pytest.mark.parametrize("sample", [0, 1, 7, 20, 30, 45, 59, 60])
-@pytest.mark.parametrize("refine", [1, 3])
-def test_braking_keeps_to_the_path_and_the_limits(
-        arm: Arm, arc: Callable[..., Trajectory], sample: int, refine: int) -> None:
+def test_braking_keeps_to_the_path_and_the_limits(arm: Arm, arc: Callable[..., Trajectory], sample: int) -> None:
     path = arm.from_file_units(arc().positions)
-    points = brake(arm, path, sample, RATE_HZ, refine)
-    np.testing.assert_allclose(points[:, 1:], np.tile(path[0, 1:], (len(points), 1)), atol=1e-12)
-    assert (np.diff(np.concatenate((path[sample, :1], points[:, 0]))) >= -1e-5).all()
-    # Limits by plain differences of the whole of what is sent, from the path into the stop.
-    before = interpolate(path, sample + np.arange(-6 * refine, 1) / refine)
-    change = np.concatenate((before, points, np.tile(points[-1], (3, 1))))
+    ramp = brake(arm, path, sample, RATE_HZ)
+    np.testing.assert_allclose(ramp.points[:, 1:], np.tile(path[0, 1:], (len(ramp.points), 1)), atol=1e-12)
+    assert (np.diff(np.concatenate((path[sample, :1], ramp.points[:, 0]))) >= -1e-5).all()
+    np.testing.assert_allclose(ramp.points[-1], path[ramp.end], atol=1e-12)
+    before = interpolate(path, sample + np.arange(-6.0, 1.0))
+    _keeps_limits(arm, np.concatenate((before, ramp.points, np.tile(ramp.points[-1], (3, 1)))))
+    assert len(ramp.points) / RATE_HZ <= 0.41
+
+
+@pytest.mark.parametrize("sample", [0, 1, 7, 20, 30, 45, 59, 60])
+def test_setting_off_joins_the_path_at_a_sample_and_at_its_pace(
+        arm: Arm, arc: Callable[..., Trajectory], sample: int) -> None:
+    path = arm.from_file_units(arc().positions)
+    ramp = set_off(arm, path, sample, RATE_HZ)
+    np.testing.assert_allclose(ramp.points[:, 1:], np.tile(path[0, 1:], (len(ramp.points), 1)), atol=1e-12)
+    np.testing.assert_allclose(ramp.points[-1], path[ramp.end], atol=1e-12)
+    rest, after = np.tile(path[sample], (3, 1)), interpolate(path, ramp.end + np.arange(1.0, 6.0))
+    _keeps_limits(arm, np.concatenate((rest, ramp.points, after)))
+
+
+def _keeps_limits(arm: Arm, points: FloatArray) -> None:
+    change = points
     for limit in (arm.max_velocity, arm.max_acceleration, arm.max_jerk):
-        change = np.diff(change, axis=0) * RATE_HZ * refine
+        change = np.diff(change, axis=0) * RATE_HZ
         assert (np.abs(change) / limit).max() <= 1.1
-    assert len(points) / (RATE_HZ * refine) <= 0.41
 
 
 @pytest.mark.parametrize("rate_hz", [50.0, 100.0, 1000.0])

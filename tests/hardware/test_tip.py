@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hardware.tip import tip_at
+from hardware.tip import link_nodes_mm, tip_at
 from planner.arms.arm import Arm, Joint, JointKind, Pen, PenHold
 from planner.arms.arm_file import load_arm
 from planner.checking.chain import chain_poses
@@ -40,6 +40,10 @@ def test_jacobian_is_the_finite_difference_and_the_chain_agrees_with_the_check(c
     other = chain_poses(chain, joints[None])
     np.testing.assert_allclose(tip.position_mm, other.tip_mm[:, 0], atol=1e-9)
     np.testing.assert_allclose(tip.axis, other.tool[:, 0], atol=1e-12)
+    nodes_mm = link_nodes_mm(chain, np.stack((joints, -joints)))
+    np.testing.assert_allclose(nodes_mm[:, -1], [tip.position_mm, tip_at(chain, -joints).position_mm], atol=1e-9)
+    np.testing.assert_allclose(min(0.0, nodes_mm[0, :, 2].min()),
+                               min(0.0, other.lowest_mm[0], tip.position_mm[2]), atol=1e-9)
     step = 1e-5
     for k in range(chain.n_joints):
         change = step * np.eye(chain.n_joints)[k]

@@ -1,0 +1,56 @@
+"""Every driver there is, by the name that `plan run --driver` takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from hardware.calibration import Calibration, pulse_calibration
+from hardware.clock import Clock
+from hardware.driver import Driver
+from hardware.port import Line
+from hardware.streaming.controller import Controller
+from hardware.streaming.driver import StreamingDriver
+from hardware.streaming.dynamixel import dynamixel_bus
+from hardware.streaming.feetech import feetech_bus
+from hardware.streaming.maestro import Maestro
+from hardware.streaming.ssc32 import Ssc32
+from planner.arms.arm import Arm
+
+SIMULATED = "sim"
+_NATIVE = "native"
+_STREAMING: dict[str, Callable[[Arm], Controller]] = {
+    "maestro": Maestro,
+    "maestro-crc": partial(Maestro, with_crc=True),
+    "ssc32": Ssc32,
+    "feetech": feetech_bus,
+    "dynamixel": dynamixel_bus,
+}
+
+DRIVERS = (SIMULATED, _NATIVE, *_STREAMING)
+
+
+def calibration_of(name: str, arm: Arm) -> Calibration | None:
+    """What the servos of that driver are told; None for an arm that is only simulated and says nothing of servos.
+
+    Errors: HardwareError where the arm file does not say how joints are moved.
+    """
+    if name in _STREAMING:
+        return _STREAMING[name](arm).calibration
+    undescribed = any(joint.servo is None for joint in arm.joints)
+    return None if name == SIMULATED and undescribed else pulse_calibration(arm)
+
+
+def make_driver(name: str, arm: Arm, line: Line, clock: Clock) -> Driver:
+    """The driver of that name at the end of a line, not yet connected.
+
+    Errors: HardwareError where the arm file does not say how joints are moved.
+    """
+    if name == _NATIVE:
+        from hardware.codecs.native import BAUD
+        from hardware.native.driver import NativeDriver
+
+        calibration = pulse_calibration(arm)
+        return NativeDriver(lambda: line.open(BAUD), calibration.to_servos, calibration.addresses, calibration.ranges,
+                            clock)
+    return StreamingDriver(arm, _STREAMING[name](arm), line, clock)

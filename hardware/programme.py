@@ -1,0 +1,96 @@
+"""What is played: from where the arm is parked to the drawing, the drawing or the rest of it, and back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from hardware.gentle_move import gentle_move
+from hardware.stopping import interpolate, lift, set_off
+from hardware.tip import link_nodes_mm
+from planner.arms.arm import Arm
+from planner.arrays import FloatArray, IntArray
+from planner.errors import UsageError
+from planner.trajectory import TRAVELLING
+
+_LEAST_RATE_HZ = 50.0
+"""Played slowly, samples are interpolated: hobby servos look for a new pulse 50 times a second."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Programme:
+    """Set points at a fixed rate, the arm at rest at the first and at the last, which are both the park pose.
+
+    positions: (n, n_joints) rad or mm. stroke: (n,) index of the stroke being drawn, or TRAVELLING.
+    approach, retreat: how many set points come before and after those of the drawing.
+    """
+
+    positions: FloatArray
+    stroke: IntArray
+    rate_hz: float
+    approach: int
+    retreat: int
+
+    @property
+    def duration_s(self) -> float:
+        return (len(self.positions) - 1) / self.rate_hz
+
+    @property
+    def park(self) -> FloatArray:
+        """(n_joints,) where the arm comes from and goes back to."""
+        park: FloatArray = self.positions[0]
+        return park
+
+
+def make_programme(arm: Arm, set_points: FloatArray, stroke: IntArray, rate_hz: float, *, from_stroke: int = 0,
+                   park: FloatArray | None = None) -> Programme:
+    """The programme of `set_points` (n_samples, n_joints; rad or mm) and their `stroke` (n_samples,) labels.
+
+    from_stroke: the first to be drawn; the drawing is joined at the highest sample of the hop before it, from rest.
+    park: where the arm comes from and goes to; if None it is where the file begins, lifted if the pen is down there.
+    Errors: UsageError (no such stroke), PlanError (no way from or to the park pose).
+    """
+    refine = math.ceil(_LEAST_RATE_HZ / rate_hz)
+    body, labels, rate_hz = *_refined(set_points, stroke, refine), rate_hz * refine
+    first = _start_of(arm, set_points, stroke, from_stroke) * refine
+    rest = body[first]
+    if first:
+        joining = set_off(arm, body, first, rate_hz)
+        labels = np.concatenate((labels[[first, *np.floor(joining.at).astype(np.int64)]], labels[joining.end + 1:]))
+        body = np.concatenate((rest[None], joining.points, body[joining.end + 1:]))
+    if park is None:
+        lifted = lift(arm, set_points[0], rate_hz) if _is_low(arm, set_points[0]) else set_points[:1]
+        park = np.concatenate((set_points[:1], lifted))[-1]
+    there, back = gentle_move(arm, park, rest, rate_hz), gentle_move(arm, body[-1], park, rate_hz)
+    if len(there):  # which ends where the body begins
+        there = np.concatenate((park[None], there[:-1]))
+    return Programme(
+        np.concatenate((there, body, back)),
+        np.pad(labels, (len(there), len(back)), constant_values=TRAVELLING), rate_hz, len(there), len(back))
+
+
+def _refined(set_points: FloatArray, stroke: IntArray, refine: int) -> tuple[FloatArray, IntArray]:
+    """`refine` set points for each sample; one between two samples is of a stroke if both are."""
+    at = np.arange((len(set_points) - 1) * refine + 1)
+    before, after = stroke[at // refine], stroke[-(-at // refine)]
+    return interpolate(set_points, at / refine), np.where(before == after, before, TRAVELLING)
+
+
+def _start_of(arm: Arm, set_points: FloatArray, stroke: IntArray, index: int) -> int:
+    """The sample from which stroke `index` and all after it are drawn, and nothing before."""
+    if index == 0:
+        return 0
+    of_stroke = np.flatnonzero(stroke >= index)
+    if index < 0 or not len(of_stroke):
+        raise UsageError(f"there is no stroke {index}; the drawing has 0 to {stroke.max(initial=-1)}")
+    begins = int(of_stroke[0])
+    earlier = np.flatnonzero(stroke[:begins] != TRAVELLING)
+    hop = np.arange(int(earlier[-1]) + 1 if len(earlier) else 0, begins + 1)
+    heights_mm = link_nodes_mm(arm, set_points[hop])[:, -1, 2]
+    return int(hop[np.argmax(heights_mm)])
+
+
+def _is_low(arm: Arm, posture: FloatArray) -> bool:
+    return bool(link_nodes_mm(arm, posture[None])[0, -1, 2] < arm.pen.clearance_mm)

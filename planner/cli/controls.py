@@ -1,0 +1,101 @@
+"""What people at the arm want of it: keys of the terminal, Ctrl-C, and a request to terminate."""
+
+from __future__ import annotations
+
+import os
+import re
+import select
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from hardware.playing import Request
+
+KEYS = "space or p pauses and resumes, q or Ctrl-C stops and parks, x or Esc stops at once and holds"
+
+_PAUSE, _STOP, _EMERGENCY_STOP = b" pP", b"qQ", (b"x", b"X", b"\x1b")
+_SEQUENCES = re.compile(rb"\x1b(\[[0-?]*[ -/]*[@-~]|O.)")
+"""What arrows and function keys arrive as, which begins as Esc does."""
+_SEVERITY = (Request.GO, Request.PAUSE, Request.STOP, Request.EMERGENCY_STOP)
+
+
+class Controls:
+    """The request that holds now; it only ever gets more severe, pausing and going on aside."""
+
+    def __init__(self) -> None:
+        self._request = Request.GO
+        self._keyboard: int | None = None
+
+    @property
+    def has_keys(self) -> bool:
+        return self._keyboard is not None
+
+    def request(self) -> Request:
+        """Looks whether a key has been pressed, and never waits."""
+        if self._keyboard is not None and select.select([self._keyboard], [], [], 0)[0]:
+            keys = os.read(self._keyboard, 1024)
+            if not keys:  # the terminal is gone: nobody is left to press a key
+                self._keyboard = None
+            self._press(keys)
+        return self._request
+
+    def _press(self, keys: bytes) -> None:
+        keys = _SEQUENCES.sub(b"", keys)
+        for key in (keys[place:place + 1] for place in range(len(keys))):
+            if key in _EMERGENCY_STOP:
+                self._demand(Request.EMERGENCY_STOP)
+            elif key in _STOP:
+                self._demand(Request.STOP)
+            elif key in _PAUSE:
+                self._demand(Request.GO if self._request is Request.PAUSE else Request.PAUSE)
+
+    def _demand(self, request: Request) -> None:
+        if request is Request.GO or _SEVERITY.index(request) > _SEVERITY.index(self._request):
+            self._request = request
+
+    def interrupt(self, number: int, frame: FrameType | None) -> None:
+        """The first signal stops, the second stops at once, and a third breaks in wherever it may be."""
+        if self._request is Request.EMERGENCY_STOP:
+            raise KeyboardInterrupt
+        self._demand(Request.EMERGENCY_STOP if self._request is Request.STOP else Request.STOP)
+
+    @contextmanager
+    def keyboard(self) -> Iterator[None]:
+        """Keys are read one by one and not shown, if standard input is a terminal and this program has it in front.
+
+        The terminal is as it was afterwards, however that comes.
+        """
+        try:
+            import termios
+            import tty
+
+            terminal = sys.stdin.fileno()
+            in_front = os.isatty(terminal) and os.tcgetpgrp(terminal) == os.getpgrp()
+        except (ImportError, AttributeError, OSError, ValueError):  # no terminals of this kind, or no standard input
+            in_front = False
+        if not in_front:
+            yield
+            return
+        before = termios.tcgetattr(terminal)
+        try:
+            tty.setcbreak(terminal)
+            self._keyboard = terminal
+            yield
+        finally:
+            self._keyboard = None
+            termios.tcsetattr(terminal, termios.TCSADRAIN, before)
+
+
+@contextmanager
+def controls() -> Iterator[Controls]:
+    """Keys and signals become requests until this ends."""
+    wishes = Controls()
+    before = {number: signal.signal(number, wishes.interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        with wishes.keyboard():
+            yield wishes
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,61 @@
+"""`plan run --picture FILE`: what the simulated arm drew, by itself or beside what was wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from hardware.drawn import drawn_lines, write_svg
+from hardware.tip import link_nodes_mm
+from planner.arms.arm import Arm
+from planner.arrays import FloatArray
+from planner.cli.output import check_target
+from planner.trajectory import Trajectory
+
+
+def check_pictures(targets: Sequence[Path], source: Path) -> None:
+    """Errors: OutputError, UsageError (unknown suffix)."""
+    for target in targets:
+        check_target(target, source)
+        if not _is_svg(target):
+            from planner.plots.figure_file import picture_format
+
+            picture_format(target)
+
+
+def save_pictures(targets: Sequence[Path], trajectory: Trajectory, arm: Arm, set_points: FloatArray,
+                  positions: FloatArray, first_stroke: int) -> list[str]:
+    """Write what was drawn as the joints went through `positions`; how like it is what was wanted, in words.
+
+    An .svg holds what was drawn at its true size, any other picture shows it beside what was wanted from
+    `first_stroke` on. Errors: OutputError.
+    """
+    from planner.checking.likeness import likeness
+
+    drawn = drawn_lines(arm, positions)
+    wanted = list(_wanted(trajectory, arm, set_points, first_stroke))
+    text = likeness(drawn, wanted).text()
+    for target in targets:
+        if _is_svg(target):
+            write_svg(drawn, target)
+        else:
+            from planner.plots.figure_file import save_figure
+            from planner.plots.likeness import plot_likeness
+
+            heading = trajectory.drawing or "trajectory"
+            save_figure(plot_likeness(wanted, drawn, heading, f"drawn on {arm.name}, {text}"), target)
+    return [f"what was drawn is {text}"]
+
+
+def _is_svg(target: Path) -> bool:
+    return target.suffix.lower() == ".svg"
+
+
+def _wanted(trajectory: Trajectory, arm: Arm, set_points: FloatArray, first_stroke: int) -> Iterator[FloatArray]:
+    """The tip's path on the paper, stroke by stroke."""
+    samples = np.flatnonzero(trajectory.stroke >= first_stroke)
+    tip_mm = link_nodes_mm(arm, set_points[samples])[:, -1, :2]
+    begins = np.flatnonzero(np.diff(trajectory.stroke[samples], prepend=-1))
+    yield from np.split(tip_mm, begins[1:])

@@ -1,0 +1,281 @@
+"""`plan run` from the outside: what it refuses, what it says, and what is left when it is interrupted."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import re
+import select
+import signal
+import subprocess
+import sys
+import termios
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from planner.checking.likeness import likeness
+from planner.cli import main
+from planner.drawing.flatten import flatten_all
+from planner.drawing.svg import read_drawing
+from planner.trajectory import read_trajectory
+from tests.hardware.controllers.lines import pty_line
+from tests.hardware.controllers.maestro import MaestroModel
+
+ROOT = Path(__file__).resolve().parent.parent
+RUN = [sys.executable, "-m", "planner.cli", "run"]
+
+
+def _planned(folder: Path, shapes: str) -> Path:
+    drawing, target = folder / "drawing.svg", folder / "traj.csv"
+    drawing.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 160 60">{shapes}</svg>')
+    assert main([str(drawing), "-o", str(target), "--quiet"]) == 0
+    drawing.unlink()
+    return target
+
+
+@pytest.fixture
+def taps_csv(tmp_path: Path) -> Path:
+    """Ten taps in a row, some five seconds of them."""
+    return _planned(tmp_path, "".join(f'<path d="M{x} {x % 3}h0"/>' for x in range(0, 160, 16)))
+
+
+@pytest.fixture
+def ring_csv(tmp_path: Path) -> Path:
+    """A large circle drawn in one stroke of several seconds."""
+    return _planned(tmp_path, '<circle cx="80" cy="30" r="29"/>')
+
+
+def _error(capsys: pytest.CaptureFixture[str]) -> str:
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("plan: error: ")
+    assert err.count("\n") == 1
+    return err
+
+
+def test_what_ideal_servos_draw_is_the_drawing_and_real_ones_draw_worse(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    csv, svg, png = tmp_path / "garden.csv", tmp_path / "drawn.svg", tmp_path / "drawn.png"
+    example = ROOT / "examples/garden.svg"
+    assert main([str(example), "-o", str(csv), "--quiet"]) == 0
+    assert main(["run", str(csv), "--fast", "--picture", str(svg), "--picture", str(png)]) == 0
+    said = re.search(r"([0-9.]+) mm at the largest", capsys.readouterr().out)
+    assert said is not None
+    assert float(said[1]) < 0.1
+    assert png.read_bytes().startswith(b"\x89PNG")
+    # Beside the drawing itself, not only beside the trajectory.
+    a, b, c, d, e, f = read_trajectory(csv).svg_to_arm_mm
+    wanted = flatten_all(read_drawing(example).outlines, np.array([[a, c, e], [b, d, f]]), 0.005)
+    drawn = flatten_all(read_drawing(svg).outlines, np.eye(2, 3), 0.005)
+    assert likeness([-line[:, ::-1] for line in drawn], wanted).largest_mm < 0.1
+    assert main(["run", str(csv), "--fast", "--servos", "real", "--picture", str(svg)]) == 0
+    said = re.search(r"off by ([0-9.]+) mm rms", capsys.readouterr().out)
+    assert said is not None
+    assert float(said[1]) > 0.1
+
+
+def test_a_dry_run_says_what_would_be_sent_and_sends_nothing(
+        taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(taps_csv), "--driver", "maestro", "--dry-run"]) == 0
+    text = capsys.readouterr().out
+    assert "can be played on arm 'drawing_arm' by driver maestro" in text
+    positions_deg = read_trajectory(taps_csv).positions[:, 0]
+    servo = re.search(r"joint q1, servo 0: ([0-9.]+) to ([0-9.]+) us", text)
+    assert servo is not None
+    pulses = np.sort(1500 + 10 * np.array([positions_deg.min(), positions_deg.max()]))
+    assert [float(value) for value in servo.groups()] == pytest.approx(pulses.tolist(), abs=0.051)
+    assert list(taps_csv.parent.iterdir()) == [taps_csv]
+
+
+@pytest.mark.parametrize(("options", "message"), [
+    (["--driver", "maestro"], "--driver maestro needs --port; plan ports lists what is plugged in"),
+    (["--driver", "marionette"], "there is no driver 'marionette'; there are sim, native, "),
+    (["--port", "/dev/ttyUSB0"], "the simulated arm is at no port"),
+    (["--driver", "ssc32", "--port", "loop://", "--fast"], "--fast goes with the simulated arm"),
+    (["--driver", "ssc32", "--port", "loop://", "--picture", "d.png"], "--picture goes with the simulated arm"),
+    (["--resume", "--from-stroke", "2"], "leave out --from-stroke"),
+    (["--resume"], "there is nothing to resume: no journal"),
+    (["--from-stroke", "10"], "there is no stroke 10; the drawing has 0 to 9"),
+    (["--picture", "drawn.bmp"], "a picture file ends in one of"),
+    (["--arm", "scara"], "moves the joints q1_deg, q2_deg"),
+    (["--arm", "drawing_arm_2022"], "line "),
+])
+def test_what_makes_no_sense_is_refused_before_anything_moves(
+        options: list[str], message: str, taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(taps_csv), *options]) == 2
+    assert message in _error(capsys)
+    assert list(taps_csv.parent.iterdir()) == [taps_csv]
+
+
+def test_a_file_that_was_cut_off_is_refused(taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = taps_csv.read_text().splitlines()[:300]
+    taps_csv.write_text("\n".join(lines) + "\n")
+    assert main(["run", str(taps_csv)]) == 2
+    assert "line 300: the last sample is at" in _error(capsys)
+    last_s = lines[-1].split(",")[0]
+    taps_csv.write_text(re.sub(r"(?<=duration_s: ).*", last_s, "\n".join(lines)) + "\n")
+    assert main(["run", str(taps_csv)]) == 2
+    assert re.search(r"line (299|300): joint", _error(capsys))
+
+
+def test_from_a_stroke_on_and_then_nothing_is_left(
+        taps_csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    svg = tmp_path / "drawn.svg"
+    assert main(["run", str(taps_csv), "--fast", "--from-stroke", "7", "--picture", str(svg)]) == 0
+    assert "0.000 mm at the largest" in capsys.readouterr().out  # beside strokes 7 to 9
+    assert svg.read_text().count("<polyline") == 3
+    assert main(["run", str(taps_csv), "--resume"]) == 0
+    assert "is drawn to its end" in capsys.readouterr().out
+
+
+def _entries(journal: Path) -> dict[str, object]:
+    told: dict[str, object] = {}
+    for line in journal.read_bytes().splitlines():
+        told |= json.loads(line)
+    return told
+
+
+@pytest.mark.skipif(os.name != "posix", reason="kills a process")
+def test_killed_outright_it_resumes_and_draws_nothing_twice_beyond_one_stroke(
+        taps_csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    journal = taps_csv.with_name("traj.csv.sim.journal")
+    process = subprocess.Popen([*RUN, str(taps_csv)], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    until = time.monotonic() + 20
+    while not (journal.exists() and b'"next_stroke": 3' in journal.read_bytes()) and time.monotonic() < until:
+        time.sleep(0.02)
+    process.kill()
+    out, err = process.communicate(timeout=20)
+    assert (out, err) == (b"", b"")
+    resumed = _entries(journal)["next_stroke"]
+    assert resumed in (3, 4)
+    assert "ended" not in _entries(journal)
+    svg = tmp_path / "rest.svg"
+    assert main(["run", str(taps_csv), "--fast", "--resume", "--picture", str(svg)]) == 0
+    assert f"going on from stroke {resumed}" in capsys.readouterr().err
+    assert svg.read_text().count("<polyline") == 10 - int(str(resumed))
+    assert _entries(journal)["ended"] == "complete"
+    taps_csv.write_text(taps_csv.read_text() + "\n")
+    assert main(["run", str(taps_csv), "--fast", "--resume"]) == 2
+
+
+def test_a_file_changed_since_is_not_resumed(taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", str(taps_csv), "--fast"]) == 0
+    capsys.readouterr()
+    taps_csv.write_text(taps_csv.read_text().replace("# drawing: drawing.svg", "# drawing: other.svg"))
+    assert main(["run", str(taps_csv), "--fast", "--resume"]) == 2
+    assert "has changed since" in _error(capsys)
+
+
+def test_where_no_journal_can_be_kept_it_draws_all_the_same_and_says_so(
+        taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    taps_csv.with_name("traj.csv.sim.journal").mkdir()
+    assert main(["run", str(taps_csv), "--fast"]) == 0
+    assert "there will be nothing for --resume to go by: cannot write" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not Path("/dev/ptmx").exists(), reason="needs pseudo-terminals")
+def test_a_cable_pulled_mid_run_is_exit_4_and_resume_finishes_on_another_line(
+        taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    journal = taps_csv.with_name("traj.csv.journal")
+    with pty_line(MaestroModel()) as far:
+        command = [*RUN, str(taps_csv), "--driver", "maestro", "--port", far.name]
+        process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        until = time.monotonic() + 30
+        while not (journal.exists() and b'"next_stroke": 2' in journal.read_bytes()) and time.monotonic() < until:
+            time.sleep(0.02)
+        far.unplug()
+        _, err = process.communicate(timeout=30)
+    assert process.returncode == 4
+    assert "plan: error: " + far.name in err
+    resumed = int(str(_entries(journal)["next_stroke"]))
+    assert resumed >= 2
+    assert f"--resume goes on from stroke {resumed} of 0..9" in err
+    with pty_line(MaestroModel()) as far:
+        assert main(["run", str(taps_csv), "--driver", "maestro", "--port", far.name, "--resume"]) == 0
+    assert f"going on from stroke {resumed}" in capsys.readouterr().err
+
+
+class _Terminal:
+    """`plan run` in a terminal of its own, in front."""
+
+    def __init__(self, *arguments: str) -> None:
+        self.pid, self._master = pty.fork()
+        if self.pid == 0:
+            os.chdir(ROOT)
+            os.execv(sys.executable, [*RUN, *arguments])
+        self.seen = ""
+
+    def wait_for(self, text: str) -> None:
+        until = time.monotonic() + 20
+        while text not in self.seen:
+            assert time.monotonic() < until, self.seen
+            if select.select([self._master], [], [], 0.1)[0]:
+                self.seen += os.read(self._master, 4096).decode()
+
+    def press(self, keys: bytes) -> None:
+        os.write(self._master, keys)
+
+    @property
+    def shows_keys(self) -> bool:
+        return bool(termios.tcgetattr(self._master)[3] & termios.ECHO)
+
+    def end(self) -> int:
+        """Its exit code, once everything it said has been seen."""
+        while True:
+            try:
+                said = os.read(self._master, 4096)
+            except OSError:  # Linux says that the other side is closed
+                break
+            if not said:
+                break
+            self.seen += said.decode()
+        code = os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+        os.close(self._master)
+        return code
+
+
+@pytest.mark.skipif(not Path("/dev/ptmx").exists(), reason="needs pseudo-terminals")
+@pytest.mark.filterwarnings("ignore:.*forkpty.*:DeprecationWarning")
+def test_keys_pause_resume_and_stop(ring_csv: Path) -> None:
+    terminal = _Terminal(str(ring_csv))
+    terminal.wait_for("space or p pauses")
+    terminal.wait_for("stroke")
+    assert not terminal.shows_keys
+    terminal.press(b" ")
+    terminal.wait_for("paused")
+    terminal.press(b"\x1b[A")  # an arrow key is no Esc
+    terminal.seen = ""
+    terminal.press(b"p")
+    terminal.wait_for("stroke")
+    terminal.press(b"q")
+    terminal.wait_for("stopped after")
+    assert terminal.end() == 130
+    assert "the arm is parked" in terminal.seen
+    assert "--resume goes on" in terminal.seen
+
+
+@pytest.mark.skipif(not Path("/dev/ptmx").exists(), reason="needs pseudo-terminals")
+@pytest.mark.filterwarnings("ignore:.*forkpty.*:DeprecationWarning")
+@pytest.mark.parametrize("key", [b"x", b"\x1b", b"\x03"])
+def test_the_terminal_is_as_it_was_whatever_ends_it(ring_csv: Path, key: bytes) -> None:
+    terminal = _Terminal(str(ring_csv))
+    terminal.wait_for("stroke")
+    assert not terminal.shows_keys
+    terminal.press(key)
+    terminal.wait_for("after")
+    assert terminal.shows_keys
+    assert terminal.end() == 130
+    assert ("the arm holds where it is" in terminal.seen) == (key != b"\x03")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs signals")
+def test_a_rehearsal_leaves_the_arms_own_journal_alone(taps_csv: Path) -> None:
+    journal = taps_csv.with_name("traj.csv.journal")
+    journal.write_text("the arm's own")
+    assert main(["run", str(taps_csv), "--fast", "--quiet"]) == 0
+    assert journal.read_text() == "the arm's own"
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
