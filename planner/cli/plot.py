@@ -54,7 +54,7 @@ A film's name is enough to ask for one."""
 _WITHOUT_TRAJECTORY = "workspace"
 _GOES_WITH = {
     "drawing": ("drawing", "error"), "tolerance": ("error",), "stroke": ("phase",),
-    "from": ("profiles", "timeline", "film"), "to": ("profiles", "timeline", "film"),
+    "from_s": ("profiles", "timeline", "film"), "to_s": ("profiles", "timeline", "film"),
     "speed_factor": ("film",), "fps": ("film",),
 }
 _KINDS = ("profiles", "drawing", "speed", "error", "phase", "timeline", "film", "workspace")
@@ -107,15 +107,17 @@ def _parser() -> Parser:
                         f"(default: {PlanSettings().tolerance_mm:g} mm)")
     parser.add_argument("--stroke", type=_index, metavar="K",
                         help="with --kind phase: which stroke, from 0 (default: the one that takes longest)")
-    parser.add_argument("--from", type=number(zero=True), metavar="SECONDS",
-                        help="with profiles, timeline and film: begin there")
-    parser.add_argument("--to", type=number(), metavar="SECONDS", help="with profiles, timeline and film: end there")
+    parser.add_argument("--from", dest="from_s", type=number(zero=True), metavar="SECONDS",
+                        help="with --kind profiles, timeline or film: begin there")
+    parser.add_argument("--to", dest="to_s", type=number(), metavar="SECONDS",
+                        help="with --kind profiles, timeline or film: end there")
     style = parser.add_argument_group("look")
     style.add_argument("--theme", choices=("light", "dark"), default="light", help="(default: %(default)s)")
     style.add_argument("--size", choices=("screen", "paper"), default="screen",
                        help="1920 pixels wide, or 180 mm for print (default: %(default)s)")
     style.add_argument("--dpi", type=number(minimum=30, maximum=1200), metavar="N",
-                       help="pixels to the inch of a .png or a film (default: 150 on a screen, 300 on paper, 75 in films)")
+                       help="pixels to the inch of a .png or a film (default: 150 for a screen, 300 for paper, 75 for "
+                       "films)")
     film = parser.add_argument_group("film")
     film.add_argument("--speed-factor", type=number(minimum=0.01, maximum=10_000), metavar="X",
                       help="times as fast as the arm (default: 1, or what makes it last 20 s)")
@@ -134,7 +136,8 @@ def _index(text: str) -> int:
 def _refuse_what_means_nothing(options: argparse.Namespace, kind: str) -> None:
     for option, kinds in _GOES_WITH.items():
         if getattr(options, option) is not None and kind not in kinds:
-            raise UsageError(f"--{option.replace('_', '-')} goes with --kind {' or '.join(kinds)}, not {kind}")
+            name = option.removesuffix("_s").replace("_", "-")
+            raise UsageError(f"--{name} goes with --kind {' or '.join(kinds)}, not {kind}")
     if kind == _WITHOUT_TRAJECTORY:
         if options.trajectory:
             raise UsageError("--kind workspace is of an arm and takes no trajectory; name the arm with --arm")
@@ -159,7 +162,7 @@ def _figure(trajectory: Trajectory, arm: Arm, kind: str, options: argparse.Names
     from planner.plots.samples import require_joints
 
     require_joints(trajectory, arm)
-    part = {"from_s": getattr(options, "from"), "to_s": options.to}
+    part = {"from_s": options.from_s, "to_s": options.to_s}
     if kind == "profiles":
         from planner.plots.profiles import plot_profiles
 
@@ -239,6 +242,6 @@ def _film(trajectory: Trajectory, arm: Arm, options: argparse.Namespace, look: L
     require_joints(trajectory, arm)
     canvas, reach_mm = _paper_of(arm)
     motion = motion_of(trajectory, arm, _tip_mm(trajectory, arm), speed_factor=options.speed_factor, fps=options.fps,
-                       from_s=getattr(options, "from"), to_s=options.to)
+                       from_s=options.from_s, to_s=options.to_s)
     with progress(quiet=options.quiet) as show:
         save_film(motion, options.output, canvas, reach_mm, look, show)

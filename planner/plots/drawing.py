@@ -42,10 +42,10 @@ def plot_drawing(
     with look.style():
         sheet = Sheet(look)
         axes = paper_panel(sheet, [xy, wanted_line], canvas_corners_mm, reach_mm)
-        _line(axes, wanted_line, "wanted", color=colours.wanted, linewidth=0.18 * look.letter_pt, zorder=2)
+        _line(axes, wanted_line, "wanted", color=colours.wanted, linewidth=0.2 * look.letter_pt, zorder=2)
         _dots(axes, wanted_taps, "tap wanted", color=colours.wanted, size=4.5, zorder=2)
         _line(axes, travel_line, "travel, pen up", color=colours.travel, linewidth=0.35, zorder=2.5)
-        _line(axes, drawn_line, "drawn", color=colours.drawn, linewidth=0.09 * look.letter_pt, zorder=3)
+        _line(axes, drawn_line, "drawn", color=colours.drawn, linewidth=0.11 * look.letter_pt, zorder=3)
         _dots(axes, _taps(trajectory, xy), "tap", color=colours.drawn, size=2.2, zorder=3)
         remark = (f"{int(trajectory.stroke.max(initial=-1)) + 1} strokes, {_length_mm(drawn_line):.0f} mm drawn and "
                   f"{_length_mm(travel_line):.0f} mm travelled in {trajectory.duration_s:.4g} s "

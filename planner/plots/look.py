@@ -67,7 +67,7 @@ _COLOURS = {
         drawn="#56B4E9", limit="#F08A3C", wanted="#5E4A16", travel="#8C9296", lifting="#2BC79A", lowering="#F08A3C",
         dwelling="#D998BC", link="#C9CDCF", scale=(0.2, 1.0)),
 }
-_SIZES = {Size.PAPER: (180 / 25.4, 7.0, 300), Size.SCREEN: (12.8, 9.5, 150)}
+_SIZES = {Size.PAPER: (180 / 25.4, 7.0, 300.0), Size.SCREEN: (12.8, 9.5, 150.0)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +77,10 @@ class Look:
     colours: Colours
     width_in: float
     letter_pt: float
-    dpi: int
+    dpi: float
 
     @staticmethod
-    def of(theme: Theme = Theme.LIGHT, size: Size = Size.SCREEN, dpi: int | None = None) -> Look:
+    def of(theme: Theme = Theme.LIGHT, size: Size = Size.SCREEN, dpi: float | None = None) -> Look:
         """dpi: pixels per inch of a PNG or a film; None for 300 on paper and 150 on a screen."""
         width_in, letter_pt, usual_dpi = _SIZES[size]
         return Look(_COLOURS[theme], width_in, letter_pt, dpi or usual_dpi)
@@ -122,8 +122,8 @@ class Look:
             "legend.fontsize": letter,
             "lines.solid_joinstyle": "round",
             "lines.solid_capstyle": "round",
-            "savefig.dpi": float(self.dpi),
-            "figure.dpi": float(self.dpi),
+            "savefig.dpi": self.dpi,
+            "figure.dpi": self.dpi,
             "pdf.fonttype": 42,
             "svg.hashsalt": "plan",  # the same trajectory gives the same file, byte for byte
             "agg.path.chunksize": 20_000,

@@ -54,7 +54,7 @@ def place_axes(axes: Axes, low: FloatArray, high: FloatArray, width_em: float, c
     axes.set_xlim(high[1], low[1])
     axes.set_ylim(low[0], high[0])
     axes.set_aspect("equal", adjustable="box")
-    tick_mm = round_step(float(high[1] - low[1]) / max(width_em / _TICK_EM, 2.0))
+    tick_mm = round_step(float(high[1] - low[1]) / max(width_em / _TICK_EM, 3.5))
     axes.xaxis.set_major_locator(MultipleLocator(tick_mm))
     axes.yaxis.set_major_locator(MultipleLocator(tick_mm))
     axes.set_xlabel("arm y (mm)")

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from planner.plots.look import Look
 
-_LONGEST_HEADING = 60  # characters, however wide, that fit on a page
+_WIDEST = 1.55  # em of the widest letter in a heading
 _EDGE, _REMARK, _LEGEND, _BODY = 1.6, 3.7, 5.5, 7.2
 _LINE = 1.9
 _HANDLE, _GAP, _PER_CHARACTER = 2.6, 1.6, 0.6
@@ -53,8 +53,9 @@ class Sheet:
         for axes, (left, bottom, wide, high) in self._placed:
             axes.set_position((left / self.width, bottom / height, wide / self.width, high / height))
         heading = _printable(heading)
-        if len(heading) > _LONGEST_HEADING:
-            heading = heading[:_LONGEST_HEADING - 1] + "…"
+        longest = int((self.width - 2 * _EDGE) / _WIDEST)
+        if len(heading) > longest:
+            heading = heading[:longest - 1] + "…"
         left, letter = _EDGE / self.width, self.look.letter_pt
         # a file name may hold dollar signs, which would be taken for a formula
         self.figure.text(left, 1 - _EDGE / height, heading, va="top", size=1.35 * letter, weight="bold",
