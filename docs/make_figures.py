@@ -25,6 +25,7 @@ FIGURES = {
     "timeline.png": ["traj.csv", "--kind", "timeline"],
     "profiles.png": ["traj.csv", "--from", "0", "--to", "10"],
     "workspace.png": ["--kind", "workspace"],
+    "film.gif": ["traj.csv", "--speed-factor", "5", "--fps", "8", "--quiet", "--dpi", "50"],
 }
 """What follows `plan plot` for each."""
 
@@ -36,7 +37,7 @@ def make(names: list[str]) -> None:
         if main([str(GARDEN), "-o", "traj.csv", "--quiet"]):
             sys.exit(1)
         for name in names or FIGURES:
-            if main(["plot", *FIGURES[name], "-o", str(IMAGES / name), "--dpi", "100"]):
+            if main(["plot", "--dpi", "100", *FIGURES[name], "-o", str(IMAGES / name)]):
                 sys.exit(1)
 
 
