@@ -16,6 +16,8 @@ html_theme = "furo"
 html_title = project
 html_static_path = ["_static"]
 html_css_files = ["pages.css"]
+html_copy_source = False
+html_show_copyright = False
 html_math_renderer = "mathml"
 
 
