@@ -17,7 +17,7 @@ from planner.cli import main
 ROOT = Path(__file__).resolve().parent.parent
 IMAGES = ROOT / "docs" / "images"
 GARDEN = ROOT / "examples" / "garden.svg"
-FIGURES = {
+PLOTS = {
     "garden.png": ["traj.csv", "--kind", "drawing", "--drawing", str(GARDEN)],
     "speed.png": ["traj.csv", "--kind", "speed"],
     "error.png": ["traj.csv", "--kind", "error", "--drawing", str(GARDEN)],
@@ -28,17 +28,29 @@ FIGURES = {
     "film.gif": ["traj.csv", "--speed-factor", "5", "--fps", "8", "--quiet", "--dpi", "50"],
 }
 """What follows `plan plot` for each."""
+COMPARISONS = {
+    "compare_target.png": ["--target", "53", "47.8", "0"],
+    "compare_drawing.png": [str(ROOT / "examples" / "harbour.svg")],
+    "compare_random.png": ["--random", "100", "--seed", "7"],
+}
+"""What follows `plan compare`."""
 
 
 def make(names: list[str]) -> None:
     """Figures by name, or all of them, in the folder of images."""
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        if main([str(GARDEN), "-o", "traj.csv", "--quiet"]):
-            sys.exit(1)
-        for name in names or FIGURES:
-            if main(["plot", "--dpi", "100", *FIGURES[name], "-o", str(IMAGES / name)]):
-                sys.exit(1)
+        _run([str(GARDEN), "-o", "traj.csv", "--quiet"])
+        for name in names or [*PLOTS, *COMPARISONS]:
+            if name in PLOTS:
+                _run(["plot", "--dpi", "100", *PLOTS[name], "-o", str(IMAGES / name)])
+            else:
+                _run(["compare", *COMPARISONS[name], "--plot", str(IMAGES / name)])
+
+
+def _run(arguments: list[str]) -> None:
+    if main(arguments):
+        sys.exit(1)
 
 
 if __name__ == "__main__":

@@ -97,6 +97,16 @@ class LinksCollide(PlanError):
                          " a larger --margin, or --skip-unreachable")
 
 
+class TargetBeyondReach(PlanError):
+    """A single target that the arm cannot put its pen on: gap_mm is how near it gets."""
+
+    def __init__(self, target_mm: Sequence[float], gap_mm: float, *, pointed: bool) -> None:
+        self.target_mm, self.gap_mm = tuple(float(value) for value in target_mm), gap_mm
+        place = ", ".join(f"{value:g}" for value in self.target_mm)
+        held = " with the pen pointed straight down" if pointed else ""
+        super().__init__(f"target ({place}) mm is out of reach{held}: the nearest tip found is {gap_mm:.1f} mm away")
+
+
 class DoesNotFit(PlanError):
     """A drawing kept at its true size that is larger than the canvas."""
 

@@ -69,23 +69,42 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
     exists."""
     kit = Kit.of(load_arm(settings.arm), settings)
     arm = kit.arm
-    lift_mm = arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
-    if lift_mm < arm.pen.clearance_mm:
-        raise UsageError(f"a lift of {lift_mm:g} mm is below the arm's pen clearance of {arm.pen.clearance_mm:g} mm")
+    lift_mm = _lift_mm(arm, settings)
     with crew_of(_worth_hiring(workers, drawing_file), partial(make_ready, kit)) as crew:
         report("reading", 0, 1)
         drawing = read_drawing(drawing_file)
         svg_to_arm, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
         strokes, warnings = _strokes(drawing, svg_to_arm, arm, settings)
         report("ordering strokes", 0, 1)
-        canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
-        strokes = order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
+        strokes = _ordered(strokes, arm, settings, lift_mm)
         timed, notes = _timed_strokes(crew, kit, strokes, report)
         timed, hops, more_notes = _with_hops(crew, kit, timed, lift_mm, report)
     warnings += notes + more_notes
     trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, timed, hops)
     _verify(trajectory, arm)
     return Plan(trajectory, _summary(trajectory, strokes, timed, hops, scale, size_mm, drawing, warnings))
+
+
+def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> tuple[list[FloatArray], list[str]]:
+    """Strokes (n, 2) in arm mm, placed and in the order that they are planned in, and what was left out on the way.
+    Errors: PlannerError."""
+    lift_mm = _lift_mm(arm, settings)
+    drawing = read_drawing(drawing_file)
+    svg_to_arm, _, _ = _placed(drawing, arm, settings, lift_mm)
+    strokes, warnings = _strokes(drawing, svg_to_arm, arm, settings)
+    return _ordered(strokes, arm, settings, lift_mm), warnings
+
+
+def _lift_mm(arm: Arm, settings: PlanSettings) -> float:
+    lift_mm = arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
+    if lift_mm < arm.pen.clearance_mm:
+        raise UsageError(f"a lift of {lift_mm:g} mm is below the arm's pen clearance of {arm.pen.clearance_mm:g} mm")
+    return lift_mm
+
+
+def _ordered(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> list[FloatArray]:
+    canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
+    return order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
 
 
 def _worth_hiring(workers: Workers, drawing_file: Path) -> Workers:

@@ -253,7 +253,7 @@ def test_a_drawing_named_like_a_command_is_planned_by_its_path(
 
 
 @pytest.mark.parametrize("arguments", [
-    ["-h"], *([name, "--help"] for name in ("batch", "run", "check", "plot", "arm"))])
+    ["-h"], *([name, "--help"] for name in ("batch", "run", "check", "plot", "compare", "arm"))])
 def test_every_command_explains_itself_with_examples(
         arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(arguments) == 0

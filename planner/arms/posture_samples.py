@@ -45,19 +45,26 @@ def slowest_direction_mm_s(kinematics: Kinematics, free: FloatArray) -> FloatArr
 
 def usable_postures(kinematics: Kinematics, free: FloatArray) -> BoolArray:
     """(n,) whether postures on the ray keep limits with a margin, stay clear of singularities and above the paper, and
-    keep their links apart."""
+    keep their links apart, raised too."""
     arm = kinematics.arm
     joints = arm.complete(free)
     room = LIMIT_MARGIN * (arm.maximum - arm.minimum)
     inside = ((joints >= arm.minimum + room) & (joints <= arm.maximum - room)).all(axis=1)
     clear = slowest_direction_mm_s(kinematics, free) >= arm.workspace.min_tip_speed_mm_s
     above = (kinematics.nodes_mm(free)[:, :-1, 2] >= -1e-6).all(axis=1)
-    apart = link_clearance(arm).least_mm(free)[0] >= LINK_ROOM_MM
-    usable: BoolArray = inside & clear & above & apart
+    usable: BoolArray = inside & clear & above & _links_apart(kinematics, free)
     if arm.pen.hold is PenHold.TOOL_AXIS:
         usable &= kinematics.tool_axis(free)[:, 2] < -0.5  # the task alone would let the pen point straight up
     usable[usable] = _may_be_raised(kinematics, free[usable], joints[usable])
+    if link_clearance(arm).names:
+        lifts = quickest_lifts(kinematics, arm.max_jerk, free[usable])
+        usable[usable] = _links_apart(kinematics, free[usable] + arm.pen.lift_mm * lifts)
     return usable
+
+
+def _links_apart(kinematics: Kinematics, free: FloatArray) -> BoolArray:
+    apart: BoolArray = link_clearance(kinematics.arm).least_mm(free)[0] >= LINK_ROOM_MM
+    return apart
 
 
 def _may_be_raised(kinematics: Kinematics, free: FloatArray, joints: FloatArray) -> BoolArray:

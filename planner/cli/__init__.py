@@ -71,6 +71,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.ports import ports
 
             return ports(rest)
+        case "compare":
+            from planner.cli.compare import compare
+
+            return compare(rest)
         case "arm":
             from planner.cli.arm import arm
 

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from planner.cli.joints import all_joints
 from planner.cli.parser import Parser
 from planner.cli.quantities import angle_deg
 from planner.cli.terminal import print_lines
@@ -13,7 +14,6 @@ from planner.errors import PlanError, UsageError
 
 if TYPE_CHECKING:
     from planner.arms.arm import Arm
-    from planner.arrays import FloatArray
 
 _DESCRIPTION = """\
 List the arms that come with the planner, or describe one: its Denavit-Hartenberg table, limits, couplings and pen.
@@ -70,22 +70,10 @@ def _posture(arm: Arm, positions: Sequence[float], frame: str, *, as_json: bool)
     numbers = {"base": 0, "tool": arm.n_joints} | {str(index): index for index in range(arm.n_joints + 1)}
     if frame not in numbers:
         raise UsageError(f"--frame {frame}: arm '{arm.name}' has base, tool and 0 to {arm.n_joints}")
-    posture = posture_description(arm, _all_joints(arm, positions), numbers[frame])
+    posture = posture_description(arm, all_joints(arm, positions, "--at"), numbers[frame])
     print_lines([json.dumps(posture, indent=2)] if as_json else [f"{arm.name}: {arm.source}", "",
                                                                  *posture_lines(arm, posture)])
     return 0
-
-
-def _all_joints(arm: Arm, positions: Sequence[float]) -> FloatArray:
-    """(n_joints,) rad or mm, of positions in the units of files; couplings fill in what is not given."""
-    free = list(arm.free_joints)
-    if len(positions) == arm.n_joints:
-        return arm.from_file_units(positions)
-    if len(positions) == len(free):
-        return arm.complete(positions * arm.per_file_unit[free])
-    least = f"{len(free)} or " if len(free) < arm.n_joints else ""
-    raise UsageError(f"--at: arm '{arm.name}' has {least}{arm.n_joints} positions to give "
-                     f"({', '.join(joint.name for joint in arm.joints)}), not {len(positions)}")
 
 
 def _paper(arm: Arm) -> tuple[dict[str, Any], str]:

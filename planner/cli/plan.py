@@ -32,6 +32,7 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan ports                list the serial devices that are plugged in
   plan check traj.csv       an independent verdict on a trajectory
   plan plot traj.csv -o F   pictures of a trajectory
+  plan compare DRAWING.svg  the same points by every method of inverse kinematics
   plan arm [NAME]           list the arms, or describe one"""
 
 _EPILOG = """\
@@ -92,7 +93,7 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
 
 def _parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
-    parser.usage = "plan DRAWING.svg [-o traj.csv] [options]\n       plan batch|run|check|plot|arm ..."
+    parser.usage = "plan DRAWING.svg [-o traj.csv] [options]\n       plan batch|run|check|plot|compare|arm ..."
     parser.add_argument("drawing", type=Path, metavar="DRAWING.svg")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE",
                         help="the trajectory (default: the drawing's name with .csv, in the current folder)")
@@ -104,15 +105,19 @@ def _parser() -> Parser:
 
 def add_plan_options(parser: Parser) -> None:
     """The options that say how drawings are planned, whether one or many."""
+    add_workers_option(parser)
+    parser.add_argument("--quiet", action="store_true", help="no progress and no summary, only warnings and errors")
+    parser.add_argument("--method", choices=[method.value for method in Method], default=PlanSettings().method.value,
+                        help="how postures are found (default: %(default)s)")
+    add_arm_and_placement_options(parser)
+
+
+def add_arm_and_placement_options(parser: Parser) -> None:
+    """The options that have a meaning whatever method finds the postures."""
     default = PlanSettings()
     parser.add_argument("--arm", default=default.arm, metavar="NAME|FILE",
                         help="an arm by name, or its .toml file (default: %(default)s)")
-    add_workers_option(parser)
-    parser.add_argument("--quiet", action="store_true", help="no progress and no summary, only warnings and errors")
-
     motion = parser.add_argument_group("motion")
-    motion.add_argument("--method", choices=[method.value for method in Method], default=default.method.value,
-                        help="how postures are found (default: %(default)s)")
     motion.add_argument("--weights", type=posture_weights, default=default.weights, metavar="NAME=W,...",
                         help="what method path spends spare joints on: time, sensitivity (of the tip to joint errors),"
                              " reversals (of joints), limits (distance from them); those not named weigh 1")

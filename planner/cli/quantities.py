@@ -27,6 +27,11 @@ def length_mm(*, zero: bool = False, minimum_mm: float = 0.0) -> Callable[[str],
     return read
 
 
+def coordinate_mm(text: str) -> float:
+    """A place along an axis such as `-5`, `5mm` or `0.2in`."""
+    return _in_mm(text, per_second=False)
+
+
 def speed_mm_s(text: str) -> float:
     """A positive speed such as `80`, `80mm/s` or `8cm/s`."""
     return _in_range(_in_mm(text, per_second=True), text)

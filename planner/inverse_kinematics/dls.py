@@ -2,8 +2,8 @@
 
 `dq = J^T (J J^T + lambda^2 I)^-1 e` with the geometric Jacobian J of all joints and e = [target - tip; 0],
 `q <- q + dq`, then every driven joint is set from its coupling (documents on the drawing arm, algorithm;
-Buss 2004). Lengths are in centimetres: lambda^2 = 50 weighs cm^2 against rad^2, and only so
-the documented iterations come out. Joint limits are not part of the method.
+Buss 2004). Lengths, those that joints slide by too, are in centimetres: lambda^2 = 50 weighs cm^2 against
+rad^2, and only so the documented iterations come out. Joint limits are not part of the method.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from functools import lru_cache
 import casadi
 import numpy as np
 
-from planner.arms.arm import Arm, PenHold
+from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.compiled import CompiledFunction
 from planner.arms.kinematics import kinematics_of
 from planner.arrays import FloatArray
@@ -36,6 +36,11 @@ class DlsSettings:
     tolerance_z_mm: float = 1.0
     tolerance_tilt: float = 1e-2
     most_iterations: int = 2000
+
+    def met_by(self, state: DlsStep) -> bool:
+        """Whether an iteration needs no further one."""
+        return (float(np.hypot(*state.error_mm[:2])) < self.tolerance_xy_mm
+                and abs(float(state.error_mm[2])) < self.tolerance_z_mm and state.tilt < self.tolerance_tilt)
 
 
 DOCUMENTED = DlsSettings()
@@ -81,9 +86,7 @@ def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, settings
     for index, target in enumerate(targets_mm):
         for count, state in enumerate(iterate(arm, joints, target, settings.lambda_squared)):
             joints = state.joints
-            in_plane = float(np.hypot(*state.error_mm[:2]))
-            converged[index] = (in_plane < settings.tolerance_xy_mm and abs(state.error_mm[2]) < settings.tolerance_z_mm
-                                and state.tilt < settings.tolerance_tilt)
+            converged[index] = settings.met_by(state)
             if converged[index] or count >= settings.most_iterations:
                 break
         iterations[index] = count
@@ -103,6 +106,9 @@ def _dls_step(arm: Arm) -> CompiledFunction:
     to_cm = casadi.diag(casadi.DM([1 / MM_PER_CM] * 3 + [_LEVER_CM if points else 1.0] * 3))
     turn = casadi.cross(axis, casadi.DM([0, 0, -1])) if points else casadi.SX.zeros(3)
     error = target - tip
-    scaled = to_cm @ jacobian
-    step = scaled.T @ casadi.solve(scaled @ scaled.T + damping * casadi.SX.eye(6), to_cm @ casadi.vertcat(error, turn))
+    joint_unit = casadi.diag(casadi.DM([MM_PER_CM if joint.kind is JointKind.PRISMATIC else 1.0
+                                        for joint in arm.joints]))
+    scaled = to_cm @ jacobian @ joint_unit
+    damped = scaled @ scaled.T + damping * casadi.SX.eye(6)
+    step = joint_unit @ scaled.T @ casadi.solve(damped, to_cm @ casadi.vertcat(error, turn))
     return CompiledFunction("dls", [joints, target, damping], [error, tip, step, casadi.norm_2(turn)], blocks=(1,))

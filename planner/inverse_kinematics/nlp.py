@@ -19,7 +19,7 @@ from planner.arrays import FloatArray
 from planner.inverse_kinematics.result import Solutions
 
 _CENTRING = 1e-3
-_TOLERANCE_MM = 1e-3
+TOLERANCE_MM = 1e-3
 _TOLERANCE_LIMITS = 1e-6
 _MOST_SETTLING = 50
 _ROOM = 5e-3
@@ -49,7 +49,7 @@ class NlpSolver:
         self._n_task = self.kinematics.n_task
         self._lower = np.concatenate((np.zeros(self._n_task), arm.minimum + room))
         self._upper = np.concatenate((np.zeros(self._n_task), arm.maximum - room))
-        self._allowed = np.repeat((_TOLERANCE_MM, _TOLERANCE_LIMITS), (self._n_task, arm.n_joints))
+        self._allowed = np.repeat((TOLERANCE_MM, _TOLERANCE_LIMITS), (self._n_task, arm.n_joints))
         self._solvers = [_Buffered(solver, self._lower, self._upper) for solver in (fast, sure)]
 
     def solve(self, target_mm: FloatArray, before: FloatArray) -> tuple[FloatArray, bool, int, float]:
@@ -100,10 +100,11 @@ def nlp_solver(arm: Arm) -> NlpSolver:
     return NlpSolver(arm)
 
 
-def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray) -> Solutions:
+def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, *, settle: bool = True) -> Solutions:
     """Targets (n, 3) one after the other from free joints (n_free,), each near the one before.
 
-    The first is solved until it stays where it is, so that a path does not begin with the way from the start.
+    With `settle` the first is solved until it stays where it is, so that a path does not begin with the way from the
+    start; its iterations count all of that.
     """
     solver = nlp_solver(arm)
     n_targets = len(targets_mm)
@@ -112,14 +113,16 @@ def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray) -> Solut
     iterations = np.zeros(n_targets, dtype=np.int64)
     error_mm = np.empty(n_targets)
     before = start
-    for target in targets_mm[:1]:
+    for target in targets_mm[:1 if settle else 0]:
         for _ in range(_MOST_SETTLING):
-            settled, good, _, _ = solver.solve(target, before)
+            settled, good, count, _ = solver.solve(target, before)
+            iterations[0] += count
             if not good or np.abs(settled - before).max() < 1e-4:
                 break
             before = settled
     for index, target in enumerate(targets_mm):
-        postures[index], converged[index], iterations[index], error_mm[index] = solver.solve(target, before)
+        postures[index], converged[index], count, error_mm[index] = solver.solve(target, before)
+        iterations[index] += count
         if converged[index]:
             before = postures[index]
     return Solutions(postures, converged, iterations, error_mm)

@@ -30,7 +30,7 @@ _WEIGHTS = PostureWeights()
 _HOME = PostureWeights(time=0.1, sensitivity=0.0, reversals=0.0, limits=1.0)
 """Sequential methods start from a home that is well inside the joint limits."""
 
-_TARGET_SPACING_MM = 1.0
+TARGET_SPACING_MM = 1.0
 """Distance between the targets that sequential methods solve for; splines carry their postures between."""
 _CHECKED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 _MIDDLE = np.array([0.5])
@@ -104,9 +104,14 @@ def collision_obstacles(arm: Arm, samples: Sequence[FloatArray]) -> dict[int, Ob
     return obstacles
 
 
+def home_of(arm: Arm) -> FloatArray:
+    """(n_free,) the posture that sequential methods start each stroke from. Errors: as `posture_field`."""
+    return posture_field(arm, _HOME).home
+
+
 def _sequence(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:
     """Postures of targets solved one after the other, the first from the arm's home."""
-    home = posture_field(arm, _HOME).home
+    home = home_of(arm)
     if method is Method.DLS:
         return dls.solve_sequence(arm, tips_mm, arm.complete(home), dls.FOR_DRAWING).postures
     return nlp.solve_sequence(arm, tips_mm, home).postures
@@ -117,7 +122,7 @@ def _sequential_references(arm: Arm, method: Method, tips_mm: FloatArray) -> Flo
     from scipy.interpolate import make_interp_spline  # heavy, and only these methods need it
 
     travelled = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(tips_mm, axis=0), axis=1))))
-    count = max(int(np.ceil(travelled[-1] / _TARGET_SPACING_MM)), 1) + 1
+    count = max(int(np.ceil(travelled[-1] / TARGET_SPACING_MM)), 1) + 1
     wanted = np.searchsorted(travelled, np.linspace(0.0, travelled[-1], count))
     chosen = np.unique(np.concatenate(([0], np.minimum(wanted, len(tips_mm) - 1), [len(tips_mm) - 1])))
     postures = _sequence(arm, method, tips_mm[chosen])

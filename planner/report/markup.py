@@ -15,9 +15,10 @@ class Markup(str):
 
 
 def element(name: str, /, *children: str, **attributes: str) -> Markup:
-    """An element. Children that are no Markup are escaped; Of names of attributes a final underscore
-    is left out, others are hyphens: `class_`, `http_equiv`."""
-    given = "".join(f' {key.rstrip("_").replace("_", "-")}="{escape(clean(value))}"' for key, value in attributes.items())
+    """An element. Children that are no Markup are escaped. In the name of an attribute a final underscore is left out
+    and others are hyphens: `class_`, `http_equiv`."""
+    given = "".join(f' {key.rstrip("_").replace("_", "-")}="{escape(clean(value))}"'
+                    for key, value in attributes.items())
     if name in _VOID:
         return Markup(f"<{name}{given}>")
     return Markup(f"<{name}{given}>{joined(children)}</{name}>")

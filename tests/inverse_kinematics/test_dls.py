@@ -7,20 +7,13 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from planner.arms.arm import Arm
+from planner.arms.arm import Arm, JointKind
 from planner.arms.kinematics import kinematics_of
 from planner.arrays import FloatArray
+from planner.comparison.worked_example import ERRATA, ITERATIONS, LAMBDA_SQUARED, TARGET_CM
 from planner.inverse_kinematics.dls import DOCUMENTED, FOR_DRAWING, DlsSettings, iterate, solve_sequence
 from tests.arms.chains import load_once, random_postures, reachable_postures, tips_by_product
-from tests.inverse_kinematics.worked_example import (
-    DAMPED_PSEUDOINVERSE,
-    ERRATA,
-    ITERATIONS,
-    J_JT,
-    JACOBIAN,
-    LAMBDA_SQUARED,
-    TARGET_CM,
-)
+from tests.inverse_kinematics.worked_example import DAMPED_PSEUDOINVERSE, J_JT, JACOBIAN
 
 PRINTED = 0.5e-4 * (1 + 1e-6)
 """Half a unit of the fourth decimal."""
@@ -143,3 +136,15 @@ def test_out_of_reach_is_a_value(arm: Arm) -> None:
     assert found.error_mm[0] > 140.0
     nothing = solve_sequence(arm, np.empty((0, 3)), middle, DOCUMENTED)
     assert nothing.postures.shape == (0, 4) and nothing.converged.shape == (0,)
+
+
+def test_a_joint_that_slides_counts_in_centimetres_as_all_lengths_do() -> None:
+    arm = load_once("stanford")
+    joints = (arm.minimum + arm.maximum) / 2
+    found = next(iterate(arm, joints, np.array([150.0, 40.0, 0.0]), 7.0))
+    slides = np.array([10.0 if joint.kind is JointKind.PRISMATIC else 1.0 for joint in arm.joints])
+    J = kinematics_of(arm).jacobian(joints[None])[0] / np.array([[10.0], [10.0], [10.0], [0.1], [0.1], [0.1]]) * slides
+    axis = kinematics_of(arm).tool_axis(kinematics_of(arm).free_of(joints[None]))[0]
+    error = np.concatenate((found.error_mm / 10, 10.0 * np.cross(axis, [0.0, 0.0, -1.0])))
+    step = found.step / slides
+    np.testing.assert_allclose(J.T @ J @ step + 7.0 * step, J.T @ error, atol=1e-9)

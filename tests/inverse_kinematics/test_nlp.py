@@ -97,3 +97,13 @@ def test_the_error_is_the_distance_to_the_target_and_no_targets_are_no_postures(
     np.testing.assert_allclose(found.error_mm, distance, rtol=1e-6)
     nothing = solve_sequence(arm, target[:0], start)
     assert nothing.postures.shape == (0, 4) and nothing.converged.dtype == np.bool_
+
+
+def test_settling_stays_where_a_further_solution_stays_and_is_counted() -> None:
+    arm = load_once("drawing_arm")
+    start, target = reachable_postures(arm, 4, 1)[0], np.array([[80.0, 20.0, 0.0]])
+    settled, at_once = (solve_sequence(arm, target, start, settle=settle) for settle in (True, False))
+    assert settled.iterations[0] > at_once.iterations[0] > 0
+    again, _, _, _ = nlp_solver(arm).solve(target[0], settled.postures[0])
+    moved, _, _, _ = nlp_solver(arm).solve(target[0], at_once.postures[0])
+    assert np.abs(again - settled.postures[0]).max() < 1e-4 < np.abs(moved - at_once.postures[0]).max()

@@ -1,0 +1,133 @@
+"""The same targets by every method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from planner.arms.arm import Arm, PenHold
+from planner.arms.kinematics import kinematics_of
+from planner.arrays import BoolArray, FloatArray
+from planner.comparison.convergence import Convergence, convergence
+from planner.comparison.drawing_time import StrokeTimes, stroke_times
+from planner.comparison.figures import Figures, figures_of
+from planner.comparison.measured import Measured, measure
+from planner.comparison.methods import METHODS, ComparedMethod
+from planner.comparison.targets import TargetKind, Targets
+from planner.comparison.worked_example import documented_start
+from planner.errors import PlanError, PlannerError, TargetBeyondReach
+from planner.inverse_kinematics.dls import FOR_DRAWING
+from planner.inverse_kinematics.stroke_postures import home_of
+from planner.settings import PlanSettings
+
+Report = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Failures:
+    """Targets, or strokes, that a method fails on for the same reason, and where the first of them is."""
+
+    what: str
+    count: int
+    reason: str
+    first_mm: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MethodResult:
+    """refusal: why the arm has no such method; then nothing is measured."""
+
+    method: ComparedMethod
+    figures: Figures
+    measured: Measured | None
+    failures: tuple[Failures, ...] = ()
+    refusal: str | None = None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Comparison:
+    """start: (n_joints,) rad or mm; convergences: of the documented method, a target each, where targets are single."""
+
+    arm: Arm
+    targets: Targets
+    start: FloatArray
+    results: tuple[MethodResult, ...]
+    convergences: tuple[Convergence, ...]
+
+
+def default_start(arm: Arm, kind: TargetKind) -> FloatArray:
+    """(n_joints,) for single and random targets the start of the documents on their arm; else the arm's home, and the
+    middle of the joints' ranges if it has none."""
+    documented = documented_start(arm) if kind is not TargetKind.DRAWING else None
+    if documented is not None:
+        return documented
+    try:
+        return arm.complete(home_of(arm))
+    except PlanError:
+        return arm.complete(kinematics_of(arm).free_of((arm.minimum + arm.maximum) / 2))
+
+
+def compare(arm: Arm, targets: Targets, start: FloatArray, settings: PlanSettings, report: Report) -> Comparison:
+    """Every method on the same targets from joints (n_joints,). A method that the arm has not is a result that says
+    why. Errors: TargetBeyondReach where a single target is."""
+    results = []
+    times: dict[str, StrokeTimes] = {}
+    for index, method in enumerate(METHODS):
+        report("comparing", index, len(METHODS))
+        result = _result(method, arm, targets, start, settings)
+        if targets.strokes and result.measured is not None and method.drawn_by is not None:
+            times[method.name] = stroke_times(arm, targets.strokes, replace(settings, method=method.drawn_by))
+        results.append(result)
+    report("comparing", len(METHODS), len(METHODS))
+    if targets.kind is not TargetKind.SINGLE:
+        return Comparison(arm, targets, start, _with_times(results, times), ())
+    _require_reach(arm, targets, results)
+    return Comparison(arm, targets, start, tuple(results),
+                      tuple(convergence(arm, target, start) for target in targets.tips_mm))
+
+
+def _result(method: ComparedMethod, arm: Arm, targets: Targets, start: FloatArray, settings: PlanSettings
+            ) -> MethodResult:
+    try:
+        measured = measure(method, arm, settings.weights, targets, start)
+    except PlannerError as error:
+        return MethodResult(method, Figures(), None, refusal=str(error))
+    missed = np.flatnonzero(~measured.solved)
+    failures = [Failures("targets", len(missed), method.obstacle, tuple(targets.tips_mm[missed[0]].tolist()))
+                ] if len(missed) else []
+    return MethodResult(method, figures_of(arm, targets, measured, iterates=method.iterates), measured,
+                        tuple(failures))
+
+
+def _with_times(results: Sequence[MethodResult], times: dict[str, StrokeTimes]) -> tuple[MethodResult, ...]:
+    """The results with the time of the strokes; those that one method is refused are left out of what is common."""
+    if not times:
+        return tuple(results)
+    drawn_by_all: BoolArray = np.all(np.isfinite([each.seconds for each in times.values()]), axis=0)
+    return tuple(_with_time(result, times[result.method.name], drawn_by_all) if result.method.name in times else result
+                 for result in results)
+
+
+def _with_time(result: MethodResult, times: StrokeTimes, drawn_by_all: BoolArray) -> MethodResult:
+    drawn = ~np.isnan(times.seconds)
+    figures = replace(
+        result.figures, strokes_refused=int((~drawn).sum()),
+        drawing_s=float(times.seconds[drawn].sum()) if drawn.any() else None,
+        drawing_common_s=float(times.seconds[drawn_by_all].sum()) if drawn_by_all.any() else None)
+    if not times.obstacles:
+        return replace(result, figures=figures)
+    first = times.obstacles[0]
+    refused = Failures("strokes", len(times.obstacles), first.reason, first.tip_mm)
+    return replace(result, figures=figures, failures=(*result.failures, refused))
+
+
+def _require_reach(arm: Arm, targets: Targets, results: Sequence[MethodResult]) -> None:
+    """Errors: TargetBeyondReach for a target that no method gets as near to as a drawing needs."""
+    measured = [result.measured for result in results if result.measured is not None]
+    for index, target in enumerate(targets.tips_mm):
+        gap_mm = float(np.nanmin([each.error_mm[index] for each in measured]))
+        fine = [each.solved[index] and each.error_mm[index] < 2 * FOR_DRAWING.tolerance_xy_mm for each in measured]
+        if not any(fine):
+            raise TargetBeyondReach(target.tolist(), gap_mm, pointed=arm.pen.hold is PenHold.TOOL_AXIS)

@@ -1,0 +1,98 @@
+"""Where the pen is to be put: single targets, targets all over the paper, or targets along the strokes of a drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from planner.arms.arm import Arm, PenHold
+from planner.arms.kinematics import kinematics_of
+from planner.arms.posture_samples import usable_postures
+from planner.arms.projection import project
+from planner.arrays import FloatArray, IntArray
+from planner.errors import PlanError
+from planner.inverse_kinematics.stroke_postures import TARGET_SPACING_MM
+from planner.ragged import starts_of
+
+_DRAWN, _MOST_DRAWS = 4096, 100
+
+
+class TargetKind(StrEnum):
+    SINGLE = "single"
+    """Each by itself, from the start."""
+    RANDOM = "random"
+    """All over the paper, each from the start; backwards one after the other."""
+    DRAWING = "drawing"
+    """Along strokes, each near the one before."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Targets:
+    """Tips (n, 3), arm mm, in courses that begin at firsts (n_courses,): a method that goes from posture to posture
+    begins each course from the start. along_mm: (n,) the way along the course, zero where there is none.
+    strokes: those (n, 2) of a drawing."""
+
+    kind: TargetKind
+    tips_mm: FloatArray
+    firsts: IntArray
+    along_mm: FloatArray
+    strokes: Sequence[FloatArray] = ()
+
+    def backwards(self) -> Targets:
+        """Everything in the opposite order: the last course first, from its end. Random targets become one course, so
+        that each is met from another posture than the start."""
+        firsts = len(self.tips_mm) - np.append(self.firsts, len(self.tips_mm))[:0:-1]
+        if self.kind is TargetKind.RANDOM:
+            firsts = firsts[:1]
+        return Targets(self.kind, self.tips_mm[::-1], firsts, -self.along_mm[::-1])
+
+    def first(self) -> Targets:
+        """The first target alone."""
+        return Targets(self.kind, self.tips_mm[:1], self.firsts[:1], self.along_mm[:1])
+
+
+def single_targets(tips_mm: FloatArray) -> Targets:
+    """Tips (n, 3)."""
+    return Targets(TargetKind.SINGLE, tips_mm, np.arange(len(tips_mm)), np.zeros(len(tips_mm)))
+
+
+def random_targets(arm: Arm, count: int, seed: int) -> Targets:
+    """Places of the paper in front of the arm, each reached by a usable posture that was drawn at random: within
+    limits, clear of singularities, links above the paper. Errors: PlanError where hardly any is found."""
+    random = np.random.default_rng(seed)
+    kinematics = kinematics_of(arm)
+    low, high = kinematics.free_of(arm.minimum), kinematics.free_of(arm.maximum)
+    found = np.empty((0, 3))
+    for _ in range(_MOST_DRAWS):
+        postures = random.uniform(low, high, (_DRAWN, kinematics.n_free))
+        if arm.pen.hold is PenHold.TOOL_AXIS:
+            postures = postures[kinematics.tool_axis(postures)[:, 2] < 0]
+        tips = kinematics.tip_mm(postures)
+        tips[:, 2] = 0.0
+        in_front = (tips[:, 0] >= 0) & (np.hypot(tips[:, 0], tips[:, 1]) >= arm.workspace.inner_radius_mm)
+        postures, tips = postures[in_front], tips[in_front]
+        postures, exact = project(kinematics, postures, tips)
+        found = np.concatenate((found, tips[exact][usable_postures(kinematics, postures[exact])]))
+        if len(found) >= count:
+            return Targets(TargetKind.RANDOM, found[:count], np.arange(count), np.zeros(count))
+    raise PlanError(f"arm {arm.name}: of {_MOST_DRAWS * _DRAWN} random postures only {len(found)} put the pen on the"
+                    " paper within the joint limits")
+
+
+def targets_along(strokes: Sequence[FloatArray]) -> Targets:
+    """Targets about a millimetre apart along strokes (n, 2), both ends included; a tap is one."""
+    tips, along = zip(*map(_stations, strokes), strict=True)
+    firsts = starts_of(np.array([len(course) for course in tips]))[:-1]
+    joined = np.concatenate(tips)
+    return Targets(TargetKind.DRAWING, np.column_stack((joined, np.zeros(len(joined)))), firsts,
+                   np.concatenate(along), strokes)
+
+
+def _stations(stroke: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(n, 2) evenly spaced points of a polyline, and (n,) the way to each."""
+    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(stroke, axis=0).T))))
+    along = np.linspace(0.0, way[-1], int(np.ceil(way[-1] / TARGET_SPACING_MM)) + 1)
+    return np.column_stack([np.interp(along, way, column) for column in stroke.T]), along
