@@ -19,6 +19,12 @@ class PhaseTimes:
     def total_s(self) -> float:
         return self.drawing_s + self.lowering_s + self.lifting_s + self.travelling_s + self.dwelling_s
 
+    def shares(self) -> list[tuple[str, float, float]]:
+        """The phases that take time: name, seconds, and share of the whole."""
+        return [(name, seconds, seconds / self.total_s) for name, seconds in (
+            ("drawing", self.drawing_s), ("lowering", self.lowering_s), ("lifting", self.lifting_s),
+            ("travelling", self.travelling_s), ("resting", self.dwelling_s)) if seconds > 0]
+
 
 @dataclass(frozen=True, slots=True)
 class PlanSummary:
@@ -36,25 +42,27 @@ class PlanSummary:
     rate_hz: float
     warnings: list[str] = field(default_factory=list)
 
+    @property
+    def mean_speed_mm_s(self) -> float:
+        """Of the pen on the paper; 0 where it draws no line."""
+        return self.drawn_mm / self.phases.drawing_s if self.phases.drawing_s > 0 else 0.0
+
     def lines(self) -> list[str]:
         """A few lines to read."""
-        phases = self.phases
-        total = max(phases.total_s, 1e-9)
-        shares = ", ".join(f"{name} {seconds:.1f} s ({100 * seconds / total:.0f} %)" for name, seconds in (
-            ("drawing", phases.drawing_s), ("lowering", phases.lowering_s), ("lifting", phases.lifting_s),
-            ("travelling", phases.travelling_s), ("resting", phases.dwelling_s)) if seconds > 0)
+        shares = ", ".join(f"{name} {seconds:.1f} s ({100 * share:.0f} %)"
+                           for name, seconds, share in self.phases.shares())
         taps = f", {self.n_taps} of them taps" if self.n_taps else ""
-        mean_speed = self.drawn_mm / phases.drawing_s if phases.drawing_s > 0 else 0.0
         return [
             f"{self.n_strokes} strokes{taps}: {self.drawn_mm / 1000:.2f} m drawn,"
             f" {self.travelled_mm / 1000:.2f} m travelled pen up",
             f"{self.size_mm[0]:.1f} x {self.size_mm[1]:.1f} mm on paper, {self.scale:.3g} times its size on the page",
-            f"takes {_clock(self.duration_s)} ({shares}); {mean_speed:.0f} mm/s on paper in the mean",
+            f"takes {clock(self.duration_s)} ({shares}); {self.mean_speed_mm_s:.0f} mm/s on paper in the mean",
             f"{self.n_samples} samples at {self.rate_hz:g} Hz",
         ]
 
 
-def _clock(seconds: float) -> str:
+def clock(seconds: float) -> str:
+    """A duration for people: seconds, or minutes and seconds, or hours and minutes."""
     minutes, rest = divmod(seconds, 60)
     hours, minutes = divmod(int(minutes), 60)
     if hours:

@@ -13,6 +13,7 @@ from planner.checking.polyline import DenseLines, dense_lines
 from planner.checking.verdict import Finding, Place
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
+from planner.errors import UsageError
 from planner.trajectory import Trajectory
 
 FLATTENING_MM = 0.002
@@ -27,8 +28,7 @@ def drawing_findings(
         trajectory: Trajectory, drawing: Drawing, sweeps: Sequence[Sweep], tolerance_mm: float) -> list[Finding]:
     """Compare the tip while the pen is down, at and between samples, with the drawing's outlines where
     `svg_to_arm_mm` puts them."""
-    a, b, c, d, e, f = trajectory.svg_to_arm_mm
-    user_to_arm = np.array([[a, c, e], [b, d, f]])
+    user_to_arm = _user_to_arm(trajectory)
     trouble = _map_trouble(drawing, user_to_arm)
     if trouble:
         return [Finding("svg_to_arm_mm", False, remark=trouble)]
@@ -44,6 +44,24 @@ def drawing_findings(
         _missing(wanted, wanted_lines, pen_lines, limit, user_to_arm),
         _drawn_once(trajectory, wanted, pen_lines[0], len(wanted_lines), tolerance_mm),
     ]
+
+
+def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: FloatArray) -> FloatArray:
+    """(n_samples,) mm from the tip (n_samples, 2 or more) to the drawing's outlines where `svg_to_arm_mm` puts them,
+    seen from above; 0 while the pen is up. Errors: UsageError where that map means nothing."""
+    user_to_arm = _user_to_arm(trajectory)
+    trouble = _map_trouble(drawing, user_to_arm)
+    if trouble:
+        raise UsageError(f"svg_to_arm_mm of the trajectory {trouble}")
+    distance = np.zeros(trajectory.n_samples)
+    wanted = _dense(flatten_all(drawing.outlines, user_to_arm, FLATTENING_MM))
+    distance[trajectory.pen] = wanted.distance_mm(tip_mm[trajectory.pen, :2])
+    return distance
+
+
+def _user_to_arm(trajectory: Trajectory) -> FloatArray:
+    a, b, c, d, e, f = trajectory.svg_to_arm_mm
+    return np.array([[a, c, e], [b, d, f]])
 
 
 def _map_trouble(drawing: Drawing, user_to_arm: FloatArray) -> str:

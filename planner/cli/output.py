@@ -23,3 +23,17 @@ def check_target(target: Path, *sources: Path) -> None:
     for source in sources:
         if final.exists() and source.exists() and final.samefile(source):
             raise OutputError(str(target), "it is what is being read")
+
+
+def check_folder_target(folder: Path, file: str, *sources: Path) -> None:
+    """Errors: OutputError where `file` cannot be written into `folder`, which is made later if it is missing."""
+    if folder.is_dir():
+        check_target(folder / file, *sources)
+        return
+    nearest = Path(os.path.realpath(folder))
+    while not nearest.exists():
+        nearest = nearest.parent
+    if not nearest.is_dir():
+        raise OutputError(str(folder), f"{nearest} is no folder")
+    if not os.access(nearest, os.W_OK | os.X_OK):
+        raise OutputError(str(folder), f"the folder {nearest} is not writable")

@@ -18,6 +18,7 @@ from planner.cli.quantities import (
     posture_weights,
     speed_mm_s,
 )
+from planner.cli.report import check_report, write_report_of
 from planner.cli.terminal import print_lines, print_warnings, progress
 from planner.cli.workers import add_workers_option
 from planner.settings import CanvasKind, Method, PlanSettings
@@ -39,6 +40,7 @@ examples:
   plan flower.svg                                  writes flower.csv into the current folder
   plan flower.svg -o traj.csv --arm my_arm.toml    for an arm of your own
   plan flower.svg --speed 4cm/s --margin 0.5in --rotate 90
+  plan flower.svg -o traj.csv --report flower      and a page about it, flower/index.html
   plan city.svg --workers 4                        with four processes; the result does not depend on them
   plan flower.svg --weights time=3,reversals=0     postures for speed rather than for servos with backlash
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
@@ -55,6 +57,8 @@ def plan(arguments: list[str]) -> int:
     drawing: Path = options.drawing
     target: Path = options.output or Path(drawing.with_suffix(".csv").name)
     check_target(target, drawing)
+    if options.report:
+        check_report(options.report, drawing, target)
     settings = settings_of(options)
 
     from planner.pipeline import plan as plan_drawing
@@ -68,9 +72,13 @@ def plan(arguments: list[str]) -> int:
         planned = plan_drawing(drawing, settings, report, options.workers)
         raise_if_interrupted()
         write_trajectory(planned.trajectory, target)
+        written = [target]
+        if options.report:
+            report("report", 0, 1)
+            written.append(write_report_of(planned, drawing, settings, arguments, options.report))
     print_warnings(planned.summary.warnings)
     if not options.quiet:
-        print_lines([*planned.summary.lines(), f"wrote {target}"])
+        print_lines([*planned.summary.lines(), *(f"wrote {file}" for file in written)])
     return 0
 
 
@@ -89,6 +97,8 @@ def _parser() -> Parser:
     parser.add_argument("drawing", type=Path, metavar="DRAWING.svg")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE",
                         help="the trajectory (default: the drawing's name with .csv, in the current folder)")
+    parser.add_argument("--report", type=Path, metavar="DIR",
+                        help="write DIR/index.html too: a page with summary, pictures, tables and the check's verdict")
     add_plan_options(parser)
     return parser
 

@@ -13,48 +13,52 @@ from planner.arrays import FloatArray
 from planner.comparison.compare import Comparison, MethodResult
 from planner.comparison.figures import beyond_limits
 from planner.comparison.measured import Measured
-from planner.plots.comparison_look import explain_methods, line_of, shown
-from planner.plots.look import VERMILION, planner_style, set_title
+from planner.plots.comparison_look import line_of, method_handles, shown
+from planner.plots.look import LIMIT_DASHES, USUAL, Look
+from planner.plots.sheet import Sheet
 
-_SIZE_IN = (11.0, 6.4)
+_ROWS, _COLUMNS = 2, 3
+_LEFT, _BOTTOM, _RIGHT, _BETWEEN, _BELOW, _HEIGHT, _TITLE = 5.4, 4.2, 1.8, 3.0, 6.4, 17.0, 1.8  # em
 _FLOOR_MM = 1e-9
 """Errors are drawn no smaller: there they are the rounding of numbers."""
 
 
-def plot_distributions(comparison: Comparison) -> Figure:
+def plot_distributions(comparison: Comparison, look: Look = USUAL) -> Figure:
     """Cumulative shares of all targets, those that are not solved counted as never reached: position error, iterations,
     distance to the limits, change of posture on another visit, manipulability, and the tip's sensitivity.
     Errors: UsageError where no method solves a target."""
     arm = comparison.arm
     able = shown(comparison)
-    with planner_style():
-        figure = Figure(figsize=_SIZE_IN)
-        panels = figure.subplots(2, 3, sharey=True, gridspec_kw={
-            "left": 0.06, "right": 0.985, "bottom": 0.075, "top": 0.84, "wspace": 0.1, "hspace": 0.34})
-        for axes, (title, label, scale) in zip(panels.flat, _PANELS, strict=True):
-            axes.set_title(title, loc="left", size=9.5, weight="bold")
+    with look.style():
+        sheet = Sheet(look)
+        width = (sheet.width - _LEFT - _RIGHT - (_COLUMNS - 1) * _BETWEEN) / _COLUMNS
+        panels = [sheet.panel(_LEFT + column * (width + _BETWEEN), _BOTTOM + (_ROWS - 1 - row) * (_HEIGHT + _BELOW),
+                              width, _HEIGHT) for row in range(_ROWS) for column in range(_COLUMNS)]
+        for axes, (title, label, scale) in zip(panels, _PANELS, strict=True):
+            axes.set_title(title, loc="left", size=1.15 * look.letter_pt, weight="bold")
             axes.set_xlabel(label)
             axes.set_xscale(scale)
+            axes.set_ylim(0.0, 102.0)
             if scale == "linear":
                 axes.ticklabel_format(axis="x", scilimits=(-2, 4), useMathText=True)
         for result, measured in able:
-            for axes, values in zip(panels.flat, _values(arm, result, measured), strict=True):
+            for axes, values in zip(panels, _values(arm, result, measured), strict=True):
                 _draw_shares(axes, values, len(measured.solved), result)
-        limits = panels.flat[2]
-        limits.axvline(0.0, color=VERMILION, linewidth=0.9, linestyle=(0, (5, 2)))
+        limits = panels[2]
+        limits.axvline(0.0, color=look.colours.limit, linewidth=0.9, linestyle=LIMIT_DASHES)
         left, right = limits.get_xlim()
         right = max(right, 10.0)
-        limits.axvspan(0.0, right, color=VERMILION, alpha=0.10, linewidth=0)
+        limits.axvspan(0.0, right, color=look.colours.limit, alpha=0.13, linewidth=0)
         limits.set_xlim(left, right)
-        for axes in panels[:, 0]:
-            axes.set_ylabel("share of the targets (%)")
-            axes.set_ylim(0.0, 102.0)
+        for place, axes in enumerate(panels):
+            if place % _COLUMNS:
+                axes.tick_params(labelleft=False)
+            else:
+                axes.set_ylabel("share of the targets (%)")
         count = len(comparison.targets.tips_mm)
-        set_title(figure, f"methods on {arm.name}",
-                  f"{count} random targets on the paper, each from the start; a curve that ends below 100 % leaves the "
-                  "rest unsolved", 0.2)
-        explain_methods(figure, [result for result, _ in able])
-    return figure
+        remark = (f"{count} random targets on the paper, each from the start; a curve that ends below 100 % leaves the "
+                  "rest unsolved")
+        return sheet.finish(f"methods on {arm.name}", remark, method_handles([result for result, _ in able]), _TITLE)
 
 
 _PANELS = (

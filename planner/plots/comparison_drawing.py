@@ -7,7 +7,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
 
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
@@ -15,62 +14,53 @@ from planner.comparison.compare import Comparison, MethodResult
 from planner.comparison.figures import LIMIT_SLACK, beyond_limits
 from planner.comparison.measured import Measured
 from planner.comparison.targets import Targets
-from planner.plots.comparison_look import explain_methods, line_of, shown
-from planner.plots.look import GREY, INK, VERMILION, planner_style, set_title
+from planner.plots.comparison_look import line_of, method_handles, shown
+from planner.plots.look import LIMIT_DASHES, USUAL, Look
 from planner.plots.paper import place_axes, view_mm
+from planner.plots.sheet import Sheet
 
-_WIDTH_IN, _TOP_IN, _BOTTOM_IN, _LEFT_IN, _RIGHT_IN, _GAP_IN = 12.0, 1.05, 0.45, 0.7, 0.2, 0.35
-_ERROR_IN, _JOINT_IN = 1.3, 0.95
+_LEFT, _BOTTOM, _RIGHT, _BETWEEN, _TITLE = 6.2, 4.2, 1.8, 4.0, 1.6  # em
+_ERROR, _JOINT, _ROW_GAP, _LOWEST_MAP = 10.0, 7.0, 1.2, 7.0
 _FLOOR_MM = 1e-9
 """Errors are drawn no smaller: there they are the rounding of numbers."""
 _FEW_TARGETS = 2000
 
 
-def plot_along_drawing(comparison: Comparison) -> Figure:
+def plot_along_drawing(comparison: Comparison, look: Look = USUAL) -> Figure:
     """A map of the targets for each method, those in red with a joint beyond its limits and crossed those that are not
     solved; under them, over the way drawn, the tip's error and every joint with its limits. Errors: UsageError
     where no method solves a target."""
     arm, targets = comparison.arm, comparison.targets
     able = shown(comparison)
     low, high = view_mm([targets.tips_mm[:, :2]], None)
-    map_width_in = (_WIDTH_IN - _LEFT_IN - _RIGHT_IN - (len(able) - 1) * _GAP_IN) / len(able)
-    map_in = max(map_width_in * float((high[0] - low[0]) / (high[1] - low[1])), 1.0)
-    rows_in = [_ERROR_IN, *([_JOINT_IN] * arm.n_joints)]
-    height_in = _TOP_IN + map_in + 0.6 + sum(rows_in) + 0.15 * len(rows_in) + _BOTTOM_IN
     along = _way_drawn_mm(targets)
-    with planner_style():
-        figure = Figure(figsize=(_WIDTH_IN, height_in))
-
-        def add(left_in: float, bottom_in: float, wide_in: float, high_in: float) -> Axes:
-            return figure.add_axes((left_in / _WIDTH_IN, bottom_in / height_in, wide_in / _WIDTH_IN,
-                                    high_in / height_in))
-
-        bottom_in = height_in - _TOP_IN - map_in
+    with look.style():
+        sheet = Sheet(look)
+        rows = [_ERROR, *[_JOINT] * arm.n_joints]
+        bottom = 2 * _BOTTOM + sum(rows) + len(rows) * _ROW_GAP
+        width = (sheet.width - _LEFT - _RIGHT - (len(able) - 1) * _BETWEEN) / len(able)
+        height = max(width * float((high[0] - low[0]) / (high[1] - low[1])), _LOWEST_MAP)
         for place, (result, measured) in enumerate(able):
-            axes = add(_LEFT_IN + place * (map_width_in + _GAP_IN), bottom_in, map_width_in, map_in)
-            _draw_map(axes, arm, targets, result, measured)
-            place_axes(axes, low, high)
-            axes.xaxis.set_major_locator(MaxNLocator(5))
+            axes = sheet.panel(_LEFT + place * (width + _BETWEEN), bottom, width, height)
+            _draw_map(axes, arm, targets, result, measured, look)
+            place_axes(axes, low, high, width, look.colours)
             if place:
                 axes.set_ylabel("")
-        bottom_in -= 0.6
+        bottom -= _BOTTOM
         panels = []
-        for high_in in rows_in:
-            bottom_in -= high_in
-            panels.append(add(_LEFT_IN, bottom_in, _WIDTH_IN - _LEFT_IN - _RIGHT_IN, high_in))
-            bottom_in -= 0.15
+        for row in rows:
+            bottom -= row + _ROW_GAP
+            panels.append(sheet.panel(_LEFT, bottom, sheet.width - _LEFT - _RIGHT, row))
         _draw_errors(panels[0], along, able, targets)
-        _draw_joints(panels[1:], arm, along, able, targets)
+        _draw_joints(panels[1:], arm, along, able, targets, look)
         for panel in panels:
             panel.set_xlim(0.0, max(float(along[-1]), 1.0))
             panel.tick_params(labelbottom=panel is panels[-1])
         panels[-1].set_xlabel("way drawn, strokes one after the other (mm)")
-        figure.align_ylabels(panels)
-        set_title(figure, f"methods along a drawing on {arm.name}",
-                  f"{len(targets.tips_mm)} targets along {len(targets.firsts)} strokes, seen from behind the base", 0.2)
-        explain_methods(figure, [result for result, _ in able])
-        _explain_marks(figure)
-    return figure
+        sheet.figure.align_ylabels(panels)
+        remark = f"{len(targets.tips_mm)} targets along {len(targets.firsts)} strokes, seen from behind the base"
+        return sheet.finish(f"methods along a drawing on {arm.name}", remark,
+                            [*method_handles([result for result, _ in able]), *_marks(look)], _TITLE)
 
 
 def _way_drawn_mm(targets: Targets) -> FloatArray:
@@ -81,18 +71,19 @@ def _way_drawn_mm(targets: Targets) -> FloatArray:
     return way
 
 
-def _draw_map(axes: Axes, arm: Arm, targets: Targets, result: MethodResult, measured: Measured) -> None:
+def _draw_map(axes: Axes, arm: Arm, targets: Targets, result: MethodResult, measured: Measured,
+              look: Look) -> None:
     outside = measured.solved & (beyond_limits(arm, measured.joints) > LIMIT_SLACK).any(axis=1)
     size = 2.0 if len(targets.tips_mm) < _FEW_TARGETS else 1.0
-    kinds = ((measured.solved & ~outside, ".", GREY, "within"), (outside, ".", VERMILION, "outside"),
-             (~measured.solved, "x", INK, "unsolved"))
+    kinds = ((measured.solved & ~outside, ".", look.colours.travel, "within"),
+             (outside, ".", look.colours.limit, "outside"), (~measured.solved, "x", look.colours.ink, "unsolved"))
     for chosen, marker, colour, label in kinds:
         y, x = targets.tips_mm[chosen, 1], targets.tips_mm[chosen, 0]
         axes.plot(y, x, linestyle="none", marker=marker, markersize=size * (1 if marker == "." else 2),
                   markeredgewidth=0 if marker == "." else 0.5, color=colour, label=label)
     share = float(outside.sum() / len(outside))
-    axes.set_title(f"{result.method.title}: {100 * share:.1f} % outside", loc="left", size=8,
-                   color=VERMILION if share else INK)
+    axes.set_title(f"{result.method.title}: {100 * share:.1f} % outside", loc="left", size=look.letter_pt,
+                   color=look.colours.limit if share else look.colours.ink)
 
 
 def _draw_errors(axes: Axes, along: FloatArray, able: list[tuple[MethodResult, Measured]], targets: Targets) -> None:
@@ -104,7 +95,7 @@ def _draw_errors(axes: Axes, along: FloatArray, able: list[tuple[MethodResult, M
 
 
 def _draw_joints(panels: list[Axes], arm: Arm, along: FloatArray, able: list[tuple[MethodResult, Measured]],
-                 targets: Targets) -> None:
+                 targets: Targets, look: Look) -> None:
     """A panel a joint: its course by every method, and what is beyond its limits tinted."""
     lowest, highest = arm.to_file_units(arm.minimum), arm.to_file_units(arm.maximum)
     for index, (axes, joint) in enumerate(zip(panels, arm.joints, strict=True)):
@@ -119,8 +110,8 @@ def _draw_joints(panels: list[Axes], arm: Arm, along: FloatArray, able: list[tup
         bottom, top = least - room, most + room
         for limit, near, far in ((low, min(bottom, low), low), (high, high, max(top, high))):
             if bottom <= limit <= top:
-                axes.axhline(limit, color=VERMILION, linewidth=0.9, linestyle=(0, (5, 2)))
-            axes.axhspan(near, far, color=VERMILION, alpha=0.10, linewidth=0)
+                axes.axhline(limit, color=look.colours.limit, linewidth=0.9, linestyle=LIMIT_DASHES)
+            axes.axhspan(near, far, color=look.colours.limit, alpha=0.13, linewidth=0)
         axes.set_ylim(bottom, top)
         axes.ticklabel_format(axis="y", useOffset=False)
         axes.set_ylabel(f"{joint.name} ({joint.file_unit})")
@@ -134,11 +125,10 @@ def _draw_course(axes: Axes, along: FloatArray, values: FloatArray, result: Meth
               linestyle=line.dashes, linewidth=0.6 * line.width, zorder=line.zorder, label=result.method.title)
 
 
-def _explain_marks(figure: Figure) -> None:
-    width_in, height_in = (float(side) for side in figure.get_size_inches())
-    entries = [Line2D([], [], color=GREY, marker=".", linestyle="none", label="within the joint limits"),
-               Line2D([], [], color=VERMILION, marker=".", linestyle="none", label="a joint outside"),
-               Line2D([], [], color=INK, marker="x", markersize=4, linestyle="none", label="not solved"),
-               Line2D([], [], color=VERMILION, linewidth=0.9, linestyle=(0, (5, 2)), label="limit of the joint")]
-    figure.legend(handles=entries, loc="upper right", ncols=len(entries), borderaxespad=0, columnspacing=1.4,
-                  bbox_to_anchor=(1 - 0.2 / width_in, 1 - 0.2 / height_in))
+def _marks(look: Look) -> list[Line2D]:
+    """What the legend says of the maps and limits."""
+    colours = look.colours
+    return [Line2D([], [], color=colours.travel, marker=".", linestyle="none", label="within the joint limits"),
+            Line2D([], [], color=colours.limit, marker=".", linestyle="none", label="a joint outside"),
+            Line2D([], [], color=colours.ink, marker="x", markersize=4, linestyle="none", label="not solved"),
+            Line2D([], [], color=colours.limit, linewidth=0.9, linestyle=LIMIT_DASHES, label="limit of the joint")]

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from planner.comparison.compare import Comparison, MethodResult
 from planner.comparison.measured import Measured
 from planner.errors import UsageError
-from planner.plots.look import BLUE
 
 # More of the palette of Okabe and Ito; vermilion is left to the limits.
-_SKY, _GREEN, _PURPLE, _ORANGE = "#56B4E9", "#009E73", "#CC79A7", "#E69F00"
+_BLUE, _SKY, _GREEN, _PURPLE, _ORANGE = "#0072B2", "#56B4E9", "#009E73", "#CC79A7", "#E69F00"
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +33,7 @@ _LINES = {
     "dls-drawing": Line(_PURPLE, 1.2, (0, (6, 2))),
     "nlp": Line(_GREEN, 1.5, (0, (3, 1.5))),
     "closed-form": Line(_SKY, 1.9, (0, (6, 2, 1, 2))),
-    "path": Line(BLUE, 2.6),
+    "path": Line(_BLUE, 2.6),
 }
 
 
@@ -52,11 +50,7 @@ def shown(comparison: Comparison) -> list[tuple[MethodResult, Measured]]:
     return able
 
 
-def explain_methods(figure: Figure, results: list[MethodResult]) -> None:
-    """The legend of methods, under the title."""
-    width_in, height_in = (float(side) for side in figure.get_size_inches())
-    handles = [Line2D([], [], color=line_of(result).colour, linestyle=line_of(result).dashes,
-                      linewidth=line_of(result).width,
-                      label=result.method.title) for result in results]
-    figure.legend(handles=handles, loc="upper left", ncols=len(handles), borderaxespad=0, handlelength=2.6,
-                  columnspacing=1.6, bbox_to_anchor=(0.15 / width_in, 1 - 0.57 / height_in))
+def method_handles(results: list[MethodResult]) -> list[Line2D]:
+    """What the legend says of the methods."""
+    return [Line2D([], [], color=line_of(result).colour, linestyle=line_of(result).dashes,
+                   linewidth=line_of(result).width, label=result.method.title) for result in results]

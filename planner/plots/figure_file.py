@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import warnings
 from pathlib import Path
+from typing import IO, cast
 
 from matplotlib.figure import Figure
 
 from planner.errors import UsageError
-from planner.plots.look import planner_style
+from planner.plots.look import USUAL, Look
 from planner.trajectory import written_aside
 
 # What each format would say of the time of writing is left out: equal figures make equal files.
@@ -25,13 +26,19 @@ def picture_format(target: Path) -> str:
     return suffix
 
 
-def save_figure(figure: Figure, target: Path) -> None:
+def save_figure(figure: Figure, target: Path, look: Look = USUAL) -> None:
     """Write the figure in the format that the suffix names; nothing is left behind where that fails.
 
     Errors: UsageError (unknown suffix), OutputError.
     """
     kind = picture_format(target)
-    with planner_style(), warnings.catch_warnings(), written_aside(target, binary=True) as file:
+    with written_aside(target, binary=True) as file:
+        write_figure(figure, cast("IO[bytes]", file), kind, look)
+
+
+def write_figure(figure: Figure, file: IO[bytes], kind: str, look: Look = USUAL) -> None:
+    """Write the figure into an open file; kind is one that `picture_format` answers."""
+    with look.style(), warnings.catch_warnings():
         # A drawing's name in a script that the font lacks shows as boxes; that is no matter for a warning.
         warnings.filterwarnings("ignore", message=r"Glyph .* missing from")
         figure.savefig(file, format=kind, metadata=_UNDATED[kind])

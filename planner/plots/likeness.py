@@ -9,32 +9,32 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from planner.arrays import FloatArray
-from planner.plots.look import BLUE, PALE_ORANGE, planner_style, set_title
-from planner.plots.paper import place_axes, view_mm
+from planner.plots.look import USUAL, Look
+from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, place_axes, view_mm
+from planner.plots.sheet import Sheet
 
-_WIDTH_IN, _TOP_IN, _BOTTOM_IN, _LEFT_IN, _GAP_IN, _RIGHT_IN = 14.0, 0.95, 0.5, 0.6, 0.55, 0.25
 _TAP_MM = 0.02
+_LOWEST, _TITLE = 10.0, 2.0  # em
 
 
-def plot_likeness(wanted: Sequence[FloatArray], drawn: Sequence[FloatArray], heading: str, remark: str) -> Figure:
+def plot_likeness(wanted: Sequence[FloatArray], drawn: Sequence[FloatArray], heading: str, remark: str,
+                  look: Look = USUAL) -> Figure:
     """Lines (n, 2) in arm millimetres: on the left those wanted, on the right those drawn over those wanted."""
     low, high = view_mm([*wanted, *drawn], None)
-    panel_in = (_WIDTH_IN - _LEFT_IN - _GAP_IN - _RIGHT_IN) / 2
-    paper_in = min(max((high[0] - low[0]) * panel_in / (high[1] - low[1]), 1.5), 12.0)
-    height_in = _TOP_IN + paper_in + _BOTTOM_IN
-    with planner_style():
-        figure = Figure(figsize=(_WIDTH_IN, height_in))
-        for number, (title, layers) in enumerate((
-                ("wanted", [("wanted", wanted, PALE_ORANGE, 1.0)]),
-                ("drawn, over wanted", [("wanted", wanted, PALE_ORANGE, 1.6), ("drawn", drawn, BLUE, 0.5)]))):
-            axes = figure.add_axes(((_LEFT_IN + number * (panel_in + _GAP_IN)) / _WIDTH_IN, _BOTTOM_IN / height_in,
-                                    panel_in / _WIDTH_IN, paper_in / height_in))
-            place_axes(axes, low, high)
-            axes.set_title(title, loc="left", fontsize=8.5)
-            for label, lines, color, width in layers:
-                _lines(axes, lines, label, color, width)
-        set_title(figure, heading, remark, 0.2)
-    return figure
+    colours = look.colours
+    layers = [("wanted", [("wanted", wanted, colours.wanted, 1.0)]),
+              ("drawn, over wanted", [("wanted", wanted, colours.wanted, 1.6), ("drawn", drawn, colours.drawn, 0.5)])]
+    with look.style():
+        sheet = Sheet(look)
+        width = (sheet.width - 2 * PAPER_LEFT - 2 * PAPER_RIGHT) / 2
+        height = float(np.clip((high[0] - low[0]) * width / (high[1] - low[1]), _LOWEST, 1.25 * sheet.width))
+        for number, (title, lines_of) in enumerate(layers):
+            axes = sheet.panel(PAPER_LEFT + number * (width + PAPER_LEFT + PAPER_RIGHT), PAPER_BOTTOM, width, height)
+            place_axes(axes, low, high, width, colours)
+            axes.set_title(title, loc="left")
+            for label, lines, color, thickness in lines_of:
+                _lines(axes, lines, label, color, thickness)
+        return sheet.finish(heading, remark, room=_TITLE)
 
 
 def _lines(axes: Axes, lines: Sequence[FloatArray], label: str, color: str, width: float) -> None:

@@ -11,8 +11,30 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon, Wedge
 from matplotlib.ticker import MultipleLocator
 
-from planner.arrays import FloatArray
-from planner.plots.look import INK
+from planner.arrays import BoolArray, FloatArray
+from planner.plots.look import Colours
+from planner.plots.sheet import Sheet
+
+PAPER_LEFT, PAPER_BOTTOM, PAPER_RIGHT = 5.4, 4.2, 1.8
+"""Em around the axes of a paper, for the numbers on them."""
+_TICK_EM = 5.5  # a label such as -120, with room beside it
+
+
+def paper_panel(sheet: Sheet, lines_mm: Sequence[FloatArray], canvas_corners_mm: FloatArray | None,
+                reach_mm: tuple[float, float] | None, *, bottom: float = 0.0, right: float = 0.0) -> Axes:
+    """A panel that shows the paper with all of some lines (n, 2), as wide as the sheet and as high as it needs to be,
+    with the ring and the canvas in it where they are known. bottom, right: em left free beside it."""
+    canvas = np.empty((0, 2)) if canvas_corners_mm is None else np.asarray(canvas_corners_mm, dtype=np.float64)
+    low, high = view_mm([*lines_mm, canvas], reach_mm)
+    width = sheet.width - PAPER_LEFT - PAPER_RIGHT - right
+    height = float(np.clip((high[0] - low[0]) * width / (high[1] - low[1]), 18.0, 1.25 * sheet.width))
+    axes = sheet.panel(PAPER_LEFT, bottom + PAPER_BOTTOM, width, height)
+    place_axes(axes, low, high, width, sheet.look.colours)
+    if reach_mm is not None:
+        axes.add_patch(half_ring(reach_mm, sheet.look.colours))
+    if len(canvas):
+        axes.add_patch(canvas_outline(canvas, sheet.look.colours))
+    return axes
 
 
 def view_mm(points: Sequence[FloatArray], reach_mm: tuple[float, float] | None) -> tuple[FloatArray, FloatArray]:
@@ -24,33 +46,50 @@ def view_mm(points: Sequence[FloatArray], reach_mm: tuple[float, float] | None) 
     return low - margin, high + margin
 
 
-def place_axes(axes: Axes, low: FloatArray, high: FloatArray) -> None:
-    """Axes as seen from behind the base, with the base marked: arm y grows to the left, arm x upwards."""
+def place_axes(axes: Axes, low: FloatArray, high: FloatArray, width_em: float, colours: Colours) -> None:
+    """Axes as seen from behind the base, with the base marked: arm y grows to the left, arm x upwards.
+
+    width_em: of the axes, so that the ticks get room.
+    """
     axes.set_xlim(high[1], low[1])
     axes.set_ylim(low[0], high[0])
     axes.set_aspect("equal", adjustable="box")
-    tick_mm = _tick_mm(float(high[1] - low[1]))
+    tick_mm = round_step(float(high[1] - low[1]) / max(width_em / _TICK_EM, 3.5))
     axes.xaxis.set_major_locator(MultipleLocator(tick_mm))
     axes.yaxis.set_major_locator(MultipleLocator(tick_mm))
     axes.set_xlabel("arm y (mm)")
     axes.set_ylabel("arm x (mm)")
-    axes.plot(0.0, 0.0, linestyle="none", marker="^", markersize=8, color=INK, zorder=4, label="base of the arm")
+    axes.plot(0.0, 0.0, linestyle="none", marker="^", markersize=float(np.clip(0.12 * width_em, 4, 8)),
+              color=colours.ink, markeredgewidth=0, zorder=4, label="base of the arm")
 
 
-def half_ring(reach_mm: tuple[float, float], *, face: str = "#F1F1EE") -> Wedge:
+def half_ring(reach_mm: tuple[float, float], colours: Colours, *, face: str | None = None) -> Wedge:
     """What the pen reaches in front of the base, between two radii."""
     inner, outer = reach_mm
-    return Wedge((0.0, 0.0), outer, 0.0, 180.0, width=outer - inner, facecolor=face, edgecolor="#B5B5AE",
-                 linewidth=0.6, zorder=0, label="reach of the pen")
+    return Wedge((0.0, 0.0), outer, 0.0, 180.0, width=outer - inner, facecolor=face or colours.ring,
+                 edgecolor=colours.ring_edge, linewidth=0.6, zorder=0, label="reach of the pen")
 
 
-def canvas_outline(corners_mm: FloatArray, *, face: str = "white", edge: str = "#777777") -> Polygon:
+def canvas_outline(corners_mm: FloatArray, colours: Colours, *, face: str | None = None, edge: str | None = None
+                   ) -> Polygon:
     """The canvas from its corners (4, 2) in arm coordinates."""
-    return Polygon(corners_mm[:, ::-1], closed=True, facecolor=face, edgecolor=edge, linewidth=0.7, zorder=1,
-                   label="canvas")
+    return Polygon(corners_mm[:, ::-1], closed=True, facecolor=face or colours.surface, edgecolor=edge or colours.edge,
+                   linewidth=0.7, zorder=1, label="canvas")
 
 
-def _tick_mm(width_mm: float) -> float:
-    """1, 2 or 5 times a power of ten that divides the width into about ten."""
-    decade: float = 10.0 ** np.floor(np.log10(width_mm / 10))
-    return decade * min((1, 2, 5, 10), key=lambda step: abs(np.log(step * decade * 10 / width_mm)))
+def pieces(xy: FloatArray, joined: BoolArray) -> FloatArray:
+    """The points (n, 2) that are joined to a neighbour, in order, with a row of NaN after each piece.
+
+    joined: (n - 1,) whether a line goes from each point to the next.
+    """
+    after = np.concatenate((joined, [False]))
+    before = np.concatenate(([False], joined))
+    used = after | before
+    found: FloatArray = np.insert(xy[used], np.flatnonzero(~after[used]) + 1, np.nan, axis=0)
+    return found
+
+
+def round_step(least: float) -> float:
+    """The least of 1, 2 or 5 times a power of ten that is no less than that."""
+    decade: float = 10.0 ** np.floor(np.log10(least))
+    return next(step * decade for step in (1, 2, 5, 10) if step * decade >= least * (1 - 1e-9))

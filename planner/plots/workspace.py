@@ -1,63 +1,89 @@
-"""The picture of an arm's workspace: over the paper, how freely the pen moves and how far it strays where
-a joint is off, with the ring that it reaches and the canvas."""
+"""The picture of an arm's workspace: the ring that the pen reaches with the canvases in it, and over the paper how
+freely the pen moves and how far it strays where a joint is off."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import Colormap
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
+from matplotlib.ticker import MaxNLocator
 
 from planner.arms.paper_map import PaperMap
 from planner.arrays import FloatArray
-from planner.plots.look import planner_style, set_title
-from planner.plots.paper import canvas_outline, half_ring, place_axes, view_mm
+from planner.plots.look import LIMIT_DASHES, USUAL, Look
+from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, canvas_outline, half_ring, place_axes, view_mm
+from planner.plots.sheet import Sheet
+from planner.settings import CanvasKind
 
-_WIDTH_IN, _TOP_IN, _BOTTOM_IN, _LEFT_IN, _GAP_IN, _BAR_IN = 8.0, 1.0, 0.5, 0.6, 0.75, 1.0
+_BAR, _BAR_GAP, _BAR_LABELS, _BETWEEN = 1.2, 1.2, 5.6, 3.4  # em
+_TITLE = 1.6
+_N_COLOURS = 256
 
 
-def plot_workspace(name: str, figures: PaperMap, canvas_corners_mm: FloatArray, reach_mm: tuple[float, float]
-                   ) -> Figure:
-    """Two maps in arm millimetres, one above the other: manipulability in parts of its greatest on the paper, and
-    the tip's error along the paper per degree (or mm) of error of the joints.
+def plot_workspace(name: str, figures: PaperMap, canvases_mm: Mapping[CanvasKind, FloatArray],
+                   reach_mm: tuple[float, float], look: Look = USUAL) -> Figure:
+    """The ring with the canvases, and beside it two maps, all in arm millimetres: manipulability in parts of its
+    greatest on the paper, and the tip's error along the paper per degree (or mm) of error of the joints.
 
-    canvas_corners_mm: (4, 2) in order around the canvas. reach_mm: inner and outer radius of the half ring.
+    canvases_mm: corners (4, 2) of each, in order around it; the usable one is on the maps too.
+    reach_mm: inner and outer radius of the half ring.
     """
-    low, high = view_mm([canvas_corners_mm], reach_mm)
-    map_width_in = _WIDTH_IN - _LEFT_IN - _BAR_IN
-    map_in = (high[0] - low[0]) / (high[1] - low[1]) * map_width_in
-    height_in = _TOP_IN + 2 * map_in + _GAP_IN + _BOTTOM_IN
+    low, high = view_mm(list(canvases_mm.values()), reach_mm)
+    slimness = float((high[0] - low[0]) / (high[1] - low[1]))
     greatest = float(np.nanmax(figures.manipulability))
-    maps = ((figures.manipulability / greatest, "manipulability, of its greatest", "viridis"),
-            (figures.sideways_error_mm, "error along the paper (mm per degree, rms)", "cividis_r"))
-    with planner_style():
-        figure = Figure(figsize=(_WIDTH_IN, height_in))
-        for place, (values, label, colours) in enumerate(maps):
-            bottom_in = _BOTTOM_IN + (1 - place) * (map_in + _GAP_IN)
-            axes = figure.add_axes((_LEFT_IN / _WIDTH_IN, bottom_in / height_in, map_width_in / _WIDTH_IN,
-                                    map_in / height_in))
-            bar = figure.add_axes(((_WIDTH_IN - _BAR_IN + 0.15) / _WIDTH_IN, bottom_in / height_in,
-                                   0.16 / _WIDTH_IN, map_in / height_in))
-            _draw_map(figure, axes, bar, figures, values, label, colours)
-            place_axes(axes, low, high)
-            axes.add_patch(half_ring(reach_mm, face="none"))
-            canvas = axes.add_patch(canvas_outline(canvas_corners_mm, face="none", edge="black"))
-            canvas.set_path_effects([withStroke(linewidth=2.2, foreground="white")])  # seen on dark and light alike
-        width_mm, height_mm = np.ptp(canvas_corners_mm[:, 1]), np.ptp(canvas_corners_mm[:, 0])
+    good_is_bright = look.colours.colour_map(_N_COLOURS)
+    maps = ((figures.manipulability / greatest, "manipulability, of its greatest", good_is_bright),
+            (figures.sideways_error_mm, "tip error (mm per degree, rms)", good_is_bright.reversed()))
+    with look.style():
+        sheet = Sheet(look)
+        # the maps are as high together as the ring is alone
+        outside = 2 * PAPER_LEFT + _BETWEEN + _BAR_GAP + _BAR + _BAR_LABELS
+        between = PAPER_BOTTOM + _TITLE
+        map_width = (sheet.width - outside - between / slimness) / 3
+        ring_width = sheet.width - outside - map_width
+        map_height, ring_height = map_width * slimness, ring_width * slimness
+        ring = sheet.panel(PAPER_LEFT, PAPER_BOTTOM, ring_width, ring_height)
+        place_axes(ring, low, high, ring_width, look.colours)
+        _draw_canvases(ring, canvases_mm, reach_mm, look)
+        left = PAPER_LEFT + ring_width + _BETWEEN + PAPER_LEFT
+        for place, (values, label, colour_map) in enumerate(maps):
+            axes = sheet.panel(left, PAPER_BOTTOM + (1 - place) * (map_height + between), map_width, map_height)
+            _draw_map(sheet, axes, figures, values, colour_map)
+            place_axes(axes, low, high, map_width, look.colours)
+            axes.set_title(label, loc="left", size=look.letter_pt, weight="bold")
+            axes.add_patch(half_ring(reach_mm, look.colours, face="none"))
+            if CanvasKind.USABLE in canvases_mm:
+                canvas = canvas_outline(canvases_mm[CanvasKind.USABLE], look.colours, face="none", edge="black")
+                axes.add_patch(canvas)
+                canvas.set_path_effects([withStroke(linewidth=2.2, foreground="white")])  # seen on dark and light
         error = figures.sideways_error_mm
-        set_title(figure, f"workspace of {name}",
-                  f"reach {reach_mm[0]:.0f} to {reach_mm[1]:.0f} mm, canvas {width_mm:.0f} x {height_mm:.0f} mm; "
-                  f"a degree of error in a joint is {np.nanmin(error):.2f} to {np.nanmax(error):.2f} mm, rms", 0.2)
-        handles, labels = figure.axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="upper left", ncols=len(handles), borderaxespad=0, handlelength=1.6,
-                      columnspacing=1.4, bbox_to_anchor=(0.15 / _WIDTH_IN, 1 - 0.57 / height_in))
-    return figure
+        remark = (f"reach {reach_mm[0]:.0f} to {reach_mm[1]:.0f} mm, seen from behind the base; "
+                  f"a degree of error in a joint is {np.nanmin(error):.2f} to {np.nanmax(error):.2f} mm, rms")
+        return sheet.finish(f"workspace of {name}", remark, ring.get_legend_handles_labels()[0], _TITLE)
 
 
-def _draw_map(figure: Figure, axes: Axes, bar: Axes, figures: PaperMap, values: FloatArray, label: str, colours: str
-              ) -> None:
+def _draw_canvases(axes: Axes, canvases_mm: Mapping[CanvasKind, FloatArray], reach_mm: tuple[float, float], look: Look
+                   ) -> None:
+    colours = look.colours
+    axes.add_patch(half_ring(reach_mm, colours))
+    styles = {CanvasKind.DOCUMENTED: (colours.limit, LIMIT_DASHES), CanvasKind.OPTIMAL: (colours.lifting, (0, (1, 1))),
+              CanvasKind.USABLE: (colours.drawn, "solid")}
+    for kind, corners in canvases_mm.items():
+        edge, dashes = styles[kind]
+        height_mm, width_mm = np.ptp(corners, axis=0)
+        canvas = canvas_outline(corners, colours, face="none", edge=edge)
+        canvas.set(linestyle=dashes, linewidth=1.6, zorder=2,
+                   label=f"{kind} canvas, {width_mm:.0f} × {height_mm:.0f} mm")
+        axes.add_patch(canvas)
+
+
+def _draw_map(sheet: Sheet, axes: Axes, figures: PaperMap, values: FloatArray, colour_map: Colormap) -> None:
     """A map whose cells have the mean of their corners, and none where one corner is out of reach."""
     cells = (values[:-1, :-1] + values[1:, :-1] + values[:-1, 1:] + values[1:, 1:]) / 4
-    mesh = axes.pcolormesh(figures.y_mm, figures.x_mm, np.ma.masked_invalid(cells), cmap=colours, shading="flat",
-                           rasterized=True, zorder=0.5)
-    figure.colorbar(mesh, cax=bar, label=label)
+    mesh = axes.pcolormesh(figures.y_mm, figures.x_mm, np.ma.masked_invalid(cells), shading="flat", rasterized=True,
+                           cmap=colour_map, zorder=0.5)
+    sheet.figure.colorbar(mesh, cax=sheet.beside(axes, _BAR_GAP, _BAR), ticks=MaxNLocator(4))

@@ -48,7 +48,7 @@ def test_every_joint_has_its_samples_derivatives_limits_and_units(
             assert joint.file_unit + per_time in axes.get_ylabel()
             assert axes.get_ylim()[0] < limits_drawn(axes)[0] < limits_drawn(axes)[1] < axes.get_ylim()[1]
         assert joint.name in panel(figure, arm, k, 0).get_ylabel()
-    assert [panel(figure, arm, 0, order).get_title("left") for order in range(4)] == [
+    assert [panel(figure, arm, 0, order).texts[0].get_text() for order in range(4)] == [
         "Position", "Velocity", "Acceleration", "Jerk"]
     assert all(panel(figure, arm, arm.n_joints - 1, order).get_xlabel() == "time (s)" for order in range(4))
 
@@ -118,6 +118,6 @@ def test_another_arm_s_trajectory_is_refused(arm: Arm, make_trajectory: MakeTraj
 def test_a_long_name_leaves_the_legend_its_room(arm: Arm, make_trajectory: MakeTrajectory) -> None:
     figure = plot_profiles(make_trajectory(swing=50.0, drawing="W" * 300 + ".svg"), arm)
     figure.draw_without_rendering()
-    heading = figure.texts[0].get_window_extent()
-    (legend,) = figure.legends
-    assert heading.x1 < legend.get_window_extent().x0
+    heading, legend = figure.texts[0].get_window_extent(), figure.legends[0].get_window_extent()
+    assert heading.x1 < figure.bbox.x1
+    assert legend.y1 < heading.y0

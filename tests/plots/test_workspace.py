@@ -11,9 +11,13 @@ from planner.arms.paper_map import paper_map
 from planner.arms.posture_field import posture_field
 from planner.arms.sensitivity import sideways_error
 from planner.plots.workspace import plot_workspace
+from planner.settings import CanvasKind
 
 SCARA = load_arm("scara")
-CORNERS_MM = np.array([[150.0, 100.0], [150.0, -100.0], [70.0, -100.0], [70.0, 100.0]])
+CANVASES_MM = {
+    kind: np.array([[near + height, width / 2], [near + height, -width / 2], [near, -width / 2], [near, width / 2]])
+    for kind, near, width, height in ((CanvasKind.DOCUMENTED, 60.0, 120.0, 130.0),
+                                      (CanvasKind.OPTIMAL, 60.0, 240.0, 90.0), (CanvasKind.USABLE, 70.0, 200.0, 80.0))}
 
 
 def test_figures_are_those_of_the_postures_the_arm_draws_with() -> None:
@@ -32,8 +36,8 @@ def test_figures_are_those_of_the_postures_the_arm_draws_with() -> None:
 
 def test_both_maps_show_figures_ring_canvas_and_base_seen_from_behind_the_base() -> None:
     figures = paper_map(SCARA)
-    figure = plot_workspace("scara", figures, CORNERS_MM, (60.0, 198.0))
-    maps = [axes for axes in figure.axes if axes.get_xlabel() == "arm y (mm)"]
+    figure = plot_workspace("scara", figures, CANVASES_MM, (60.0, 198.0))
+    ring, *maps = [axes for axes in figure.axes if axes.get_xlabel() == "arm y (mm)"]
     assert len(maps) == 2
     for axes, values in zip(maps, (figures.manipulability / np.nanmax(figures.manipulability),
                                    figures.sideways_error_mm), strict=True):
@@ -45,10 +49,16 @@ def test_both_maps_show_figures_ring_canvas_and_base_seen_from_behind_the_base()
         places = mesh.get_coordinates()
         np.testing.assert_array_equal(places, np.stack((figures.y_mm, figures.x_mm), axis=-1))
         shapes = {patch.get_label(): patch for patch in axes.patches}
-        np.testing.assert_array_equal(shapes["canvas"].get_xy()[:4, ::-1], CORNERS_MM)
+        np.testing.assert_array_equal(shapes["canvas"].get_xy()[:4, ::-1], CANVASES_MM[CanvasKind.USABLE])
         assert "reach of the pen" in shapes
         left, right = axes.get_xlim()
         low, high = axes.get_ylim()
         assert left > 198 > -198 > right
         assert low < 0 < 198 < high
+    shapes = {patch.get_label(): patch for patch in ring.patches}
+    assert set(shapes) == {"reach of the pen", "documented canvas, 120 × 130 mm", "optimal canvas, 240 × 90 mm",
+                           "usable canvas, 200 × 80 mm"}
+    for kind, corners in CANVASES_MM.items():
+        (shape,) = [patch for label, patch in shapes.items() if label.startswith(kind)]
+        np.testing.assert_array_equal(shape.get_xy()[:4, ::-1], corners)
     figure.draw_without_rendering()

@@ -1,0 +1,42 @@
+"""`--report DIR` of a plan: the page about it."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from planner.cli.output import check_folder_target
+from planner.errors import OutputError
+from planner.settings import PlanSettings
+
+if TYPE_CHECKING:
+    from planner.pipeline import Plan
+
+_PAGE = "index.html"
+
+
+def check_report(folder: Path, drawing: Path, target: Path) -> None:
+    """Errors: OutputError where the page cannot be written, or would replace the drawing or the trajectory."""
+    check_folder_target(folder, _PAGE, drawing)
+    if os.path.realpath(folder / _PAGE) == os.path.realpath(target):
+        raise OutputError(str(target), "the report goes there")
+
+
+def write_report_of(planned: Plan, drawing: Path, settings: PlanSettings, arguments: Sequence[str], folder: Path
+                    ) -> Path:
+    """Judge the plan and write the page about it; the page. Errors: OutputError."""
+    from planner.arms.arm_file import load_arm
+    from planner.checking.check import check_trajectory
+    from planner.cli.workspace import paper_in_reach
+    from planner.drawing.svg import read_drawing
+    from planner.report.report import Planned, write_report
+
+    arm, outlines = load_arm(settings.arm), read_drawing(drawing)
+    verdict = check_trajectory(planned.trajectory, arm, outlines, settings.tolerance_mm)
+    page = folder / _PAGE
+    write_report(Planned(shlex.join(("plan", *arguments)), settings, planned.summary, planned.trajectory, arm, outlines,
+                         verdict, paper_in_reach(arm).reach_mm), page)
+    return page

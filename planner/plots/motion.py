@@ -1,0 +1,117 @@
+"""The motion of an arm as a film shows it: which instants, and where the links are in them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.arms.arm import Arm, JointKind
+from planner.arms.frame_jacobian import chain_frames
+from planner.arrays import FloatArray, IntArray
+from planner.errors import UsageError
+from planner.plots.samples import window_s
+from planner.trajectory import Trajectory
+
+USUAL_FPS = 20.0
+_USUAL_LENGTH_S = 20.0
+_MOST_FRAMES = 200_000
+_CELL_MM = 0.05
+_BLOCK = 16_384
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Motion:
+    """A part of a trajectory, played `speed_factor` times as fast as the arm moves.
+
+    tip_mm: (n_samples, 3) at every sample of the trajectory.
+    """
+
+    trajectory: Trajectory
+    arm: Arm
+    tip_mm: FloatArray
+    begin_s: float
+    end_s: float
+    speed_factor: float
+    fps: float
+
+    @property
+    def times_s(self) -> FloatArray:
+        """(n_frames,) the instant of the trajectory that each frame shows; the last is the end of the part."""
+        step_s = self.speed_factor / self.fps
+        n_steps = max(int(np.ceil((self.end_s - self.begin_s) / step_s - 1e-9)), 0)
+        times: FloatArray = np.minimum(self.begin_s + step_s * np.arange(n_steps + 1), self.end_s)
+        return times
+
+    def last_samples(self, times_s: FloatArray) -> IntArray:
+        """(n,) the sample at or before each time."""
+        samples: IntArray = np.floor(times_s * self.trajectory.rate_hz + 1e-6).astype(np.int64)
+        return np.minimum(samples, self.trajectory.n_samples - 1)
+
+    def nodes_mm(self, times_s: FloatArray) -> FloatArray:
+        """(n, n_nodes, 3) corners of the arm from the base to the tip, joints moving evenly between samples."""
+        at = np.clip(times_s * self.trajectory.rate_hz, 0, self.trajectory.n_samples - 1)
+        before = np.minimum(np.floor(at).astype(np.int64), max(self.trajectory.n_samples - 2, 0))
+        after = np.minimum(before + 1, self.trajectory.n_samples - 1)
+        share = (at - before)[:, np.newaxis]
+        positions = self.trajectory.positions
+        joints = self.arm.from_file_units((1 - share) * positions[before] + share * positions[after])
+        return np.concatenate([_nodes(self.arm, joints[first:first + _BLOCK])
+                               for first in range(0, len(joints), _BLOCK)])
+
+    def pen_lines(self) -> tuple[IntArray, IntArray]:
+        """Samples that tell what the pen draws until the end of this part, and which begin a line, both (k,).
+
+        Those between, less than a twentieth of a millimetre further on, are left out. A tap is a line of one sample.
+        """
+        trajectory = self.trajectory
+        (last,) = self.last_samples(np.array([self.end_s]))
+        down = np.flatnonzero(trajectory.pen[:last + 1])
+        begins = np.ones(len(down), dtype=np.bool_)
+        begins[1:] = (np.diff(down) > 1) | (np.diff(trajectory.stroke[down]) != 0)
+        finishes = np.append(begins[1:], True)[:len(down)]
+        steps_mm = np.linalg.norm(np.diff(self.tip_mm[down, :2], axis=0, prepend=self.tip_mm[down[:1], :2]), axis=1)
+        cell = np.floor(np.cumsum(steps_mm) / _CELL_MM)
+        kept = begins | finishes | (np.diff(cell, prepend=-1.0) > 0)
+        return down[kept], begins[kept].astype(np.int64)
+
+
+def motion_of(trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, *, speed_factor: float | None = None,
+              fps: float | None = None, from_s: float | None = None, to_s: float | None = None) -> Motion:
+    """The part between two times. speed_factor: None for as fast as the arm, or what makes it last 20 s if that is
+    faster. fps: frames per second, 20 unless given.
+
+    Errors: UsageError where there is nothing in that part, or too much for a film.
+    """
+    begin_s, end_s = window_s(trajectory, from_s, to_s)
+    motion = Motion(trajectory, arm, tip_mm, begin_s, end_s,
+                    speed_factor or max((end_s - begin_s) / _USUAL_LENGTH_S, 1.0), fps or USUAL_FPS)
+    n_frames = (end_s - begin_s) * motion.fps / motion.speed_factor
+    if n_frames > _MOST_FRAMES:
+        raise UsageError(f"a film of {n_frames:.0f} pictures; choose a greater --speed-factor, fewer --fps or a part "
+                         "(--from, --to)")
+    return motion
+
+
+def seen_from_the_side(nodes_mm: FloatArray) -> FloatArray:
+    """(n, n_nodes, 2) distance from the base along the bearing of the tip, and height, of nodes (n, n_nodes, 3): an
+    arm that turns about its base is seen square on."""
+    bearing = np.arctan2(nodes_mm[:, -1, 1], nodes_mm[:, -1, 0])[:, np.newaxis]
+    along = nodes_mm[..., 0] * np.cos(bearing) + nodes_mm[..., 1] * np.sin(bearing)
+    seen: FloatArray = np.stack((along, nodes_mm[..., 2]), axis=-1)
+    return seen
+
+
+def _nodes(arm: Arm, joints: FloatArray) -> FloatArray:
+    """(n, n_nodes, 3): the base, and for each joint where its axis takes it and where its link ends, of all those that
+    ever differ from the one before."""
+    frames = chain_frames(arm, joints)
+    nodes = [frames[:, 0, :3, 3]]
+    for index, joint in enumerate(arm.joints):
+        slides = joint.kind is JointKind.PRISMATIC
+        if slides or joint.d_mm:
+            travel = joint.d_mm + (joints[:, index, np.newaxis] if slides else 0.0)
+            nodes.append(frames[:, index, :3, 3] + travel * frames[:, index, :3, 2])
+        if joint.a_mm:
+            nodes.append(frames[:, index + 1, :3, 3])
+    return np.stack(nodes, axis=1)
