@@ -1,0 +1,86 @@
+"""The shipped driver over pyserial and a pty, with the firmware in real time."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from hardware.clock import WallClock
+from hardware.codecs import native
+from hardware.native.driver import NativeDriver
+from hardware.port import Line
+from planner.arrays import FloatArray
+from planner.errors import HardwareError
+from tests.hardware.emulator.emulator import Emulator
+from tests.hardware.native.runs import PERIOD_S, against_plan, driver_on, waves
+
+_RUN_S = float(os.environ.get("BUSY_RUN_S", "4"))
+
+
+def _spin(until_s: float) -> None:
+    while time.monotonic() < until_s:
+        pass
+
+
+@pytest.fixture
+def busy_cores() -> Iterator[None]:
+    """One process a core that computes without end."""
+    context = multiprocessing.get_context("spawn")
+    busy = [context.Process(target=_spin, args=(time.monotonic() + 600,)) for _ in range(os.cpu_count() or 1)]
+    for process in busy:
+        process.start()
+    yield
+    for process in busy:
+        process.kill()
+        process.join()
+
+
+def _play(driver: NativeDriver, plan: FloatArray) -> None:
+    for positions in plan:
+        driver.send(positions, PERIOD_S)
+
+
+def _driver(device: Path) -> NativeDriver:
+    return driver_on(Line(str(device)).open(native.BAUD), WallClock())
+
+
+@pytest.mark.usefixtures("busy_cores")
+def test_busy_cores_starve_nothing(pty: tuple[Emulator, Path]) -> None:
+    emulator, device = pty
+    plan, driver = waves(_RUN_S), _driver(device)
+    driver.connect(plan[0])
+    time.sleep(0.1)
+    since_s = emulator.pulses(0).starts_s[-1]
+    _play(driver, plan[1:])
+    driver.flush()
+    driver.close()
+    time.sleep(0.2)
+    assert "under-runs: 0" in driver.statistics()
+    found = against_plan(emulator, plan, since_s)
+    assert found.worst_us <= 0.5
+
+
+def test_a_cable_pulled_and_put_back(pty: tuple[Emulator, Path]) -> None:
+    emulator, device = pty
+    plan, driver = waves(3.0), _driver(device)
+    driver.connect(plan[0])
+    _play(driver, plan[1:100])
+    emulator.move_cable()
+    with pytest.raises(HardwareError, match="cable"):
+        _play(driver, plan[100:])
+    driver.close()
+    emulator.move_cable()
+    deadline_s = time.monotonic() + 5
+    while not device.exists() and time.monotonic() < deadline_s:
+        time.sleep(0.01)
+    again = _driver(device)
+    again.connect(plan[0])
+    _play(again, plan[1:50])
+    again.flush()
+    assert again.executed() == 49
+    again.close()
