@@ -19,6 +19,8 @@ from planner.errors import HardwareError
 _ANSWER_S = 0.1
 """A servo answers within a millisecond; adapters on USB hand it over up to 16 later."""
 _ATTEMPTS = 3
+_HALT_S = (0.03, 0.3)
+"""How long an emergency stop waits for a servo: not long at first, so that one that is dead does not delay others."""
 _LONGEST_ANSWER = 32
 _NEAR = 0.03
 """Of a servo's range: so close to where it was sent it has arrived, its load and its dead band considered."""
@@ -89,15 +91,11 @@ class ServoBus:
                             "is it blocked, or the servos' own supply off?")
 
     def halt(self, port: Port) -> None:
-        """A servo that does not answer holds the last goal that it was sent."""
+        """Each at once as it tells where it is; one that does not answer holds the last goal that it was sent."""
         port.discard_input()
-        goals = {}
-        for servo in self._joints:
-            status = self._exchange(port, servo, self._reading(servo))
-            if status is not None and len(status.data) == self._word_size:
-                goals[servo] = status.data
-        if goals:
-            port.write(self._language.sync_write(self._registers.goal, goals))
+        moving = list(self._joints)
+        for patience_s in _HALT_S:
+            moving = [servo for servo in moving if not self._held(port, servo, patience_s)]
 
     def question(self) -> bytes:
         """Of one servo after another, whether it still has torque; any answer tells its faults as well."""
@@ -113,6 +111,16 @@ class ServoBus:
         if status.data == b"\x00":
             raise HardwareError(f"{self._named(status.servo)} has let go: it was reset, or protects itself; check the "
                                 "servos' supply and what is in the arm's way")
+        return True
+
+    def _held(self, port: Port, servo: int, patience_s: float) -> bool:
+        """Whether the servo has answered, and has where it is for its goal, or the nearest in its range."""
+        status = self._exchange(port, servo, self._reading(servo), patience_s)
+        if status is None or len(status.data) != self._word_size:
+            return False
+        low, high = self.calibration.ranges[self.calibration.addresses.index(servo)]
+        goal = min(max(self._language.count(status.data), int(low)), int(high))
+        port.write(self._language.sync_write(self._registers.goal, {servo: self._language.word(goal)}))
         return True
 
     def _goals(self, values: FloatArray) -> bytes:
@@ -142,10 +150,10 @@ class ServoBus:
                 return status
         return None
 
-    def _exchange(self, port: Port, servo: int, message: bytes) -> Status | None:
+    def _exchange(self, port: Port, servo: int, message: bytes, patience_s: float = _ANSWER_S) -> Status | None:
         port.write(message)
         received = bytearray()
-        while byte := port.read(1, _ANSWER_S):
+        while byte := port.read(1, patience_s):
             received += byte
             status = self._language.take_status(received)
             if status is not None and status.servo == servo:

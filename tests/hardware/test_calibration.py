@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.calibration import count_calibration, pulse_calibration
@@ -15,13 +15,13 @@ from planner.arms.arm_file import known_arms, load_arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError
 
+ARM = load_arm("three_joint")
 TABLE = ((-1.0, 500.0), (-0.5, 800.0), (0.5, 1500.0), (2.0, 2300.0))
 
 
 def _moved_by(servo: Servo, bus: BusServo | None = None) -> Arm:
-    arm = load_arm("three_joint")
-    return replace(arm, joints=tuple(replace(joint, servo=replace(servo, channel=k), bus=bus and replace(bus, id=k))
-                                     for k, joint in enumerate(arm.joints)))
+    return replace(ARM, joints=tuple(replace(joint, servo=replace(servo, channel=k), bus=bus and replace(bus, id=k))
+                                     for k, joint in enumerate(ARM.joints)))
 
 
 @st.composite
@@ -36,6 +36,7 @@ def servos(draw: st.DrawFn) -> Servo:
                  draw(st.floats(-50, 50)), (300.0, 3000.0), 1.0, 0.0, 0.0)
 
 
+@settings(max_examples=50)
 @given(servo=servos(), shares=st.lists(st.floats(0, 1), min_size=1, max_size=5))
 def test_back_undoes_there_and_nothing_leaves_the_range(servo: Servo, shares: list[float]) -> None:
     calibration = pulse_calibration(_moved_by(servo))
@@ -58,6 +59,7 @@ def test_between_the_rows_of_a_table_runs_a_straight_line(
     assert pulse_calibration(arm).to_servos(np.full(3, position)) == pytest.approx([pulse_us] * 3)
 
 
+@settings(max_examples=40)
 @given(share=st.floats(1e-4, 10), above=st.booleans())
 def test_beyond_the_table_or_the_range_is_refused_with_joint_value_and_range(share: float, above: bool) -> None:
     arm = _moved_by(Servo(0, TABLE, 1, 10.0, (450.0, 2200.0), 1.0, 0.0, 0.0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.codecs import feetech
@@ -29,6 +29,7 @@ def test_examples_of_the_protocols_description() -> None:
     assert five[:7] == bytes.fromhex("FF FF FE 13 83 2A 02")
 
 
+@settings(max_examples=40)
 @given(servo=SERVOS, register=st.integers(0, 80), size=st.integers(1, 8), data=DATA)
 def test_instructions_are_those_of_the_vendors_sdk(
         servo: int, register: int, size: int, data: dict[int, bytes]) -> None:

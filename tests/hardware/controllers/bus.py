@@ -21,7 +21,7 @@ class BusModel(ABC):
         self.memory = {servo: bytearray(b"\x33" * 256) for servo in positions}
         for servo, position in positions.items():
             self.memory[servo][self.TORQUE] = 0
-            self._store(servo, self.PRESENT, position)
+            self.put(servo, self.PRESENT, position)
         self.goals: list[dict[int, int]] = []
         self.stuck: set[int] = set()
         self.dead: set[int] = set()
@@ -94,7 +94,7 @@ class BusModel(ABC):
     def _load(self, servo: int, register: int) -> int: ...
 
     @abstractmethod
-    def _store(self, servo: int, register: int, value: int) -> None: ...
+    def put(self, servo: int, register: int, value: int) -> None: ...
 
 
 class FeetechModel(BusModel):
@@ -125,7 +125,7 @@ class FeetechModel(BusModel):
         value = int.from_bytes(self.memory[servo][register:register + 2], "little")
         return 32768 - value if value > 32768 else value
 
-    def _store(self, servo: int, register: int, value: int) -> None:
+    def put(self, servo: int, register: int, value: int) -> None:
         stored = value if value >= 0 else 32768 - value
         self.memory[servo][register:register + 2] = stored.to_bytes(2, "little")
 
@@ -169,5 +169,5 @@ class DynamixelModel(BusModel):
     def _load(self, servo: int, register: int) -> int:
         return int.from_bytes(self.memory[servo][register:register + 4], "little", signed=True)
 
-    def _store(self, servo: int, register: int, value: int) -> None:
+    def put(self, servo: int, register: int, value: int) -> None:
         self.memory[servo][register:register + 4] = value.to_bytes(4, "little", signed=True)

@@ -136,10 +136,13 @@ def test_emergency_stop_makes_the_place_where_a_servo_is_its_goal(name: str, kin
         moved = POSE + np.radians(5.0)
         driver.send(moved, 0.02)
         model.dead = {2}
+        model.put(5, model.PRESENT, 4000)  # pushed outside its range, which ends at 3901
         driver.emergency_stop()
         driver.close()
         far.finish()
-    assert model.goals[-1] == {servo: count for servo, count in COUNTS.items() if servo != 2}
+    held = [goals for goals in model.goals if len(goals) == 1]
+    assert {servo: count for goals in held for servo, count in goals.items()} == {
+        1: COUNTS[1], 3: COUNTS[3], 4: COUNTS[4], 5: 3901}
 
 
 @BUSES
