@@ -87,6 +87,16 @@ class TargetOutOfReach(PlanError):
             " (make the drawing smaller, move it, or use --skip-unreachable)")
 
 
+class LinksCollide(PlanError):
+    """A pen-up move on which two links, or one and the paper, come too close. `stroke` is the one that it leads to, or
+    as many as there are for the last move."""
+
+    def __init__(self, stroke: int, links: tuple[str, str], clearance_mm: float, reason: str) -> None:
+        self.stroke, self.links, self.clearance_mm = stroke, links, clearance_mm
+        super().__init__(f"on the pen-up move before stroke {stroke} {reason}; try another --method, a smaller --lift,"
+                         " a larger --margin, or --skip-unreachable")
+
+
 class DoesNotFit(PlanError):
     """A drawing kept at its true size that is larger than the canvas."""
 

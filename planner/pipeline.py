@@ -22,7 +22,7 @@ from planner.drawing.flatten import extent, flatten_all
 from planner.drawing.join import join_strokes
 from planner.drawing.order import Metric, order_strokes
 from planner.drawing.svg import read_drawing
-from planner.errors import PlanError, TargetOutOfReach, UsageError
+from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
 from planner.inverse_kinematics.stroke_postures import Obstacle
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
@@ -81,8 +81,8 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
         canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
         strokes = order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
         timed, notes = _timed_strokes(crew, kit, strokes, report)
-        hops = _hops(crew, kit, timed, lift_mm, report)
-    warnings += notes
+        timed, hops, more_notes = _with_hops(crew, kit, timed, lift_mm, report)
+    warnings += notes + more_notes
     trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, timed, hops)
     _verify(trajectory, arm)
     return Plan(trajectory, _summary(trajectory, strokes, timed, hops, scale, size_mm, drawing, warnings))
@@ -178,6 +178,32 @@ def _results(crew: Crew, kit: Kit, pieces: Sequence[Piece], report: Report) -> I
         done += len(results)
         report("drawing motions", done, len(pieces))
         yield from results
+
+
+def _with_hops(crew: Crew, kit: Kit, timed: list[TimedStroke], lift_mm: float, report: Report
+               ) -> tuple[list[TimedStroke], list[Hop], list[str]]:
+    """The strokes, the hops around them, and what is to be said of them. Strokes that the arm cannot get to, or away
+    from, with its links apart are left out if the user wants so."""
+    n_before = len(timed)
+    while True:
+        hops = _hops(crew, kit, timed, lift_mm, report)
+        blocked = {_end_that_collides(index, hop, len(timed)) for index, hop in enumerate(hops) if hop.collision}
+        if not blocked:
+            lost = n_before - len(timed)
+            return timed, hops, [f"left out whole, as links would collide before or after them: {lost} strokes"] * (
+                lost > 0)
+        if not kit.settings.skip_unreachable:
+            index, collision = next((index, hop.collision) for index, hop in enumerate(hops) if hop.collision)
+            raise LinksCollide(index, collision.links, collision.clearance_mm, str(collision))
+        timed = [stroke for index, stroke in enumerate(timed) if index not in blocked]
+        if not timed:
+            raise PlanError("nothing of the drawing can be drawn with the arm's links apart")
+
+
+def _end_that_collides(index: int, hop: Hop, n_strokes: int) -> int:
+    """The stroke, before or after the hop of that index, that is nearer in time to where links collide."""
+    leaves = hop.collision is not None and 2 * hop.collision.posture < len(hop.joints)
+    return max(index - 1, 0) if leaves or index == n_strokes else index
 
 
 def _hops(crew: Crew, kit: Kit, timed: Sequence[TimedStroke], lift_mm: float, report: Report) -> list[Hop]:

@@ -7,16 +7,23 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from planner.arms.arm import Arm
 from planner.arms.kinematics import kinematics_of
+from planner.arms.link_clearance import link_clearance
 from planner.arms.posture_field import posture_field
 from planner.arrays import FloatArray
-from planner.inverse_kinematics.stroke_postures import Obstacle, exact_postures, joint_paths, postures_at
+from planner.inverse_kinematics.stroke_postures import (
+    Obstacle,
+    collision_obstacles,
+    exact_postures,
+    joint_paths,
+    postures_at,
+)
 from planner.placement.pen_path import smooth_paths
 from planner.placement.pieces import Piece, in_pieces
 from planner.settings import Method, PlanSettings
@@ -154,10 +161,19 @@ def timed_strokes(portion: StrokePortion) -> list[TimedStroke | Obstacle]:
 def planned_hops(portion: HopPortion) -> list[Hop]:
     """The hops of a portion."""
     kinematics, limits = kinematics_of(portion.kit.arm), Limits.of(portion.kit.arm)
-    hops = plan_hops(kinematics, limits, portion.rules, portion.leave, portion.meet)
-    return [plan_branch_change(kinematics, limits, portion.rules, leave, meet)
-            if leave and meet and not keeps_branch(kinematics, hop, limits, portion.rules, meet) else hop
-            for hop, leave, meet in zip(hops, portion.leave, portion.meet, strict=True)]
+    hops = _with_collisions(kinematics.arm, plan_hops(kinematics, limits, portion.rules, portion.leave, portion.meet))
+    for index, (hop, leave, meet) in enumerate(zip(hops, portion.leave, portion.meet, strict=True)):
+        if leave and meet:
+            stays = keeps_branch(kinematics, hop, limits, portion.rules, meet)
+            if not stays or hop.collision:
+                change = plan_branch_change(kinematics, limits, portion.rules, leave, meet)
+                hops[index] = change if change.exact or not stays else hop
+    return _with_collisions(kinematics.arm, hops)
+
+
+def _with_collisions(arm: Arm, hops: Sequence[Hop]) -> list[Hop]:
+    collisions = link_clearance(arm).collisions([hop.joints for hop in hops])
+    return [replace(hop, collision=collision) for hop, collision in zip(hops, collisions, strict=True)]
 
 
 def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedStroke | Obstacle]:
@@ -178,10 +194,13 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
     motion = motions(splines, timing.rates, limits, settings.rate_hz)
     kinematics = kinematics_of(arm)
     dwell = round(settings.dwell_s * settings.rate_hz)
+    samples = motion.samples()
+    collisions = collision_obstacles(arm, samples)
     timed: list[TimedStroke | Obstacle] = []
-    for stroke, joints, settled in zip(strokes, motion.samples(), timing.settled.tolist(), strict=True):
+    for index, (stroke, joints, settled) in enumerate(zip(strokes, samples, timing.settled.tolist(), strict=True)):
         free = kinematics.free_of(joints)
-        timed.append(TimedStroke(joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell, settled))
+        timed.append(collisions.get(index) or TimedStroke(
+            joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell, settled))
     return timed
 
 
@@ -190,6 +209,7 @@ def _timed_taps(arm: Arm, tips_mm: FloatArray, settings: PlanSettings) -> list[T
     free, obstacles = exact_postures(arm, postures_at(arm, settings.method, tips, settings.weights), tips)
     blocked = {obstacle.path: obstacle for obstacle in obstacles}
     joints = arm.complete(free)
+    blocked = collision_obstacles(arm, list(joints[:, None])) | blocked
     rest = max(round(max(settings.dwell_s, _TAP_S) * settings.rate_hz), 1)
     touches = [Touch(tip, posture) for tip, posture in zip(tips_mm, free, strict=True)]
     return [blocked.get(index) or TimedStroke(joints[index:index + 1], touch, touch, rest)

@@ -142,7 +142,7 @@ def test_an_arm_file_that_contradicts_itself_is_refused_with_every_fault(
     ("scara", [("min_mm = -125.0", "min_mm = -110.0")], "no posture"),  # a slide too short for it
     ("three_joint", [('hold = "free"', 'hold = "tool_axis"')], "no posture"),  # too few joints to point the pen
     ("scara", [("inner_radius_mm = 60.0", "inner_radius_mm = 260.0")], "260 mm"),  # the ring begins beyond reach
-    ("scara", [("lift_mm = 5.0", "lift_mm = 60.0")], "no usable canvas"),  # a lift that the slide has not
+    ("scara", [("lift_mm = 5.0", "lift_mm = 60.0")], "lift it by 60 mm"),  # a lift that the slide has not
 ])
 def test_an_arm_that_cannot_draw_is_refused_with_the_reason(
         base: str, changes: list[tuple[str, str]], part: str, drawing: Path, tmp_path: Path,

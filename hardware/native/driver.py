@@ -19,6 +19,8 @@ from planner.errors import HardwareError
 _AHEAD_S = 0.65
 """No more motion than this is on the controller: it outlasts a stall of 0.4 s, and a pause waits no longer for it."""
 _POLL_S = 0.005
+_POLL_BYTES = 16
+"""A status. Port settings are written anew whenever the time to wait for bytes changes, so it never does."""
 _ASK_S = 0.1
 """Without other traffic the controller is asked how it is doing so often; an order is repeated as often."""
 _URGENT_S = 0.02
@@ -90,7 +92,7 @@ class NativeDriver:
         if self._now().state is State.OFF:
             self._command(Order.ARM, lambda order: native.arm(order, pulses))
             while self._now().state is not State.READY:
-                self._exchange(_POLL_S)
+                self._exchange()
             self._prepare()
         else:  # held since an earlier run: go to where this one sets out, as slowly as befits a path not checked
             self._prepare()
@@ -108,7 +110,6 @@ class NativeDriver:
             self._send_merged()
 
     def executed(self) -> int:
-        self._exchange(0.0)
         return self._done
 
     def flush(self) -> None:
@@ -118,7 +119,7 @@ class NativeDriver:
         self._link.push(End())
         while self._ahead or not self._link.acknowledged or self._now().state is not State.READY:
             self._play(filled=self._link.acknowledged)
-            self._exchange(_POLL_S)
+            self._exchange()
 
     def emergency_stop(self) -> None:
         if self._line is None or self._stopped:
@@ -135,7 +136,7 @@ class NativeDriver:
             if self._ahead and not self._stopped:
                 self._link.push(End())
                 for _ in range(_CLOSING_ATTEMPTS):
-                    self._exchange(_POLL_S)
+                    self._exchange()
                     if self._link.acknowledged:
                         break
         except HardwareError:
@@ -212,14 +213,14 @@ class NativeDriver:
         """Hand a key frame over as soon as there is room, and see to it that the arm plays."""
         while self._is_full():
             self._play(filled=True)
-            self._exchange(_POLL_S)
+            self._exchange()
         duration = max(round(duration_s * native.UNITS_PER_S), 1)
         if duration > 0xFFFF:
             raise HardwareError(f"a set point {duration_s:g} s after the one before it is beyond the"
                                 f" {native.LONGEST_KEY_S:g} s of a key frame")
         self._link.push(Key(duration, pulses))
         self._ahead.append((sent, duration_s))
-        self._exchange(0.0)
+        self._transmit()
 
     def _is_full(self) -> bool:
         return self._link.room <= 0 or sum(duration_s for _, duration_s in self._ahead) >= _AHEAD_S
@@ -229,20 +230,24 @@ class NativeDriver:
         if filled and self._link.acknowledged and self._ahead and self._now().state in (State.READY, State.UNDERRUN):
             self._try(Order.START)  # refused where the queue was played meanwhile
 
-    def _exchange(self, wait_s: float) -> None:
-        """Send what is due, take in what has come, waiting up to `wait_s` for it. Errors: HardwareError."""
+    def _transmit(self) -> bool:
+        """Send the key frames that are due; whether there were any."""
+        due = self._link.outgoing(self._clock.now_s())
+        if due:
+            self._write(due)
+        return bool(due)
+
+    def _exchange(self) -> None:
+        """Send what is due, and take in what comes within a moment. Errors: HardwareError."""
         now_s = self._clock.now_s()
-        due = self._link.outgoing(now_s)
-        if not due and now_s - self._asked_s > _ASK_S:
+        if not self._transmit() and now_s - self._asked_s > _ASK_S:
             self._order = (self._order + 1) % 256
-            due = native.order(Order.PING, self._order)
+            self._write(native.order(Order.PING, self._order))
             self._asked_s = now_s
             self._unanswered += 1
             if self._unanswered > _UNANSWERED:
                 raise HardwareError("the controller stopped answering: check its cable and its power")
-        if due:
-            self._write(due)
-        self._read(wait_s)
+        self._read()
 
     def _command(self, kind: Order, encode: Callable[[int], bytes] | None = None, every_s: float = _ASK_S) -> None:
         result = self._try(kind, encode, every_s)
@@ -264,21 +269,14 @@ class NativeDriver:
     def _listen(self, for_s: float, until: Callable[[], bool]) -> bool:
         deadline_s = self._clock.now_s() + for_s
         while not until():
-            now_s = self._clock.now_s()
-            if now_s >= deadline_s:
+            if self._clock.now_s() >= deadline_s:
                 return False
-            due = self._link.outgoing(now_s)  # key frames are not held up by an answer that got lost
-            if due:
-                self._write(due)
-            self._read(min(deadline_s - now_s, _POLL_S))
+            self._transmit()  # key frames are not held up by an answer that got lost
+            self._read()
         return True
 
-    def _read(self, wait_s: float) -> None:
-        line = self._connected()
-        received = line.read(1, wait_s)
-        if received:
-            received += line.read(4096, 0.0)
-        for message in self._reader.feed(received):
+    def _read(self) -> None:
+        for message in self._reader.feed(self._connected().read(_POLL_BYTES, _POLL_S)):
             if message.session == self._session:
                 if isinstance(message, Info):
                     self._info = message

@@ -69,7 +69,10 @@ class BusServo:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """One DH row and its limits: rad, rad/s, ... for a revolute joint, mm, mm/s, ... for a prismatic one."""
+    """One DH row and its limits: rad, rad/s, ... for a revolute joint, mm, mm/s, ... for a prismatic one.
+
+    thickness_mm: diameter of the row's link, a round bar along its d and its a; None where it is not known.
+    """
 
     name: str
     kind: JointKind
@@ -84,6 +87,7 @@ class Joint:
     max_jerk: float
     servo: Servo | None = None
     bus: BusServo | None = None
+    thickness_mm: float | None = None
 
     @property
     def file_unit(self) -> str:

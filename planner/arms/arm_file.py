@@ -44,6 +44,7 @@ class _JointBase(Section):
     d_mm: Number = 0.0
     a_mm: Number = 0.0
     alpha_deg: Number = 0.0
+    thickness_mm: Positive | None = None
 
     @property
     @abstractmethod
@@ -71,6 +72,12 @@ class _RevoluteSection(_JointBase):
     @property
     def limits(self) -> tuple[float, float]:
         return self.min_deg, self.max_deg
+
+    @model_validator(mode="after")
+    def _what_is_thick_has_length(self) -> Self:
+        if self.thickness_mm is not None and self.d_mm == 0 and self.a_mm == 0:
+            raise ValueError(f"thickness_mm {self.thickness_mm:g} is that of no link: d_mm and a_mm are 0")
+        return self
 
 
 class _PrismaticSection(_JointBase):
@@ -253,7 +260,8 @@ def _joint(place: int, section: _RevoluteSection | _PrismaticSection) -> Joint:
     return Joint(section.name, JointKind(section.kind), math.radians(section.theta_deg), section.d_mm,
                  section.a_mm, math.radians(section.alpha_deg), minimum, maximum, velocity, acceleration, jerk,
                  None if section.servo is None else section.servo.servo(place, unit),
-                 None if section.bus is None else section.bus.servo(unit))
+                 None if section.bus is None else section.bus.servo(unit),
+                 section.thickness_mm)
 
 
 def _arm(section: _ArmSection) -> Arm:

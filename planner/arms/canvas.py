@@ -15,6 +15,7 @@ import numpy as np
 
 from planner.arms.arm import Arm
 from planner.arms.kinematics import kinematics_of
+from planner.arms.link_clearance import KEPT_MM, link_clearance
 from planner.arms.posture_field import PostureField, posture_sheets, within_limits
 from planner.arms.projection import project
 from planner.arrays import BoolArray, FloatArray
@@ -100,7 +101,7 @@ def geometric_reach_mm(arm: Arm) -> float:
 @lru_cache(maxsize=16)
 def usable_canvas(arm: Arm, lift_mm: float) -> Canvas:
     """The largest axis-aligned rectangle where the pen gets to the paper and to the lift height
-    with all joints within limits and clear of singularities, found on a grid and then grown."""
+    with all joints within limits, clear of singularities and links apart, found on a grid and then grown."""
     sheets = posture_sheets(arm)
     sectors = [_Sector.of(sheet, lift_mm) for sheet in sheets]
     outer = max(float(sheet.radii_mm[-1]) for sheet in sheets)
@@ -155,6 +156,7 @@ class _Sector:
             tips = np.column_stack((radii, np.zeros_like(radii), np.full_like(radii, height)))
             free, exact = project(kinematics_of(arm), field.reference(tips), tips)
             good = exact & within_limits(arm, free, first_joint=False)
+            good &= link_clearance(arm).least_mm(free)[0] >= KEPT_MM
             low = np.where(good, np.maximum(low, arm.minimum[0] - free[:, 0]), np.inf)
             high = np.where(good, np.minimum(high, arm.maximum[0] - free[:, 0]), -np.inf)
         return _Sector(radii, low, high)

@@ -12,7 +12,8 @@ def arm_description(arm: Arm) -> dict[str, Any]:
     """Name, joints with their limits, DH rows, couplings and pen, in degrees, millimetres and seconds.
 
     A coupling reads joint = constant_deg + sum of coefficients[other] * other. Figures are rounded to nine
-    decimals, so that a degree that went through radians comes back as it was.
+    decimals, so that a degree that went through radians comes back as it was. A joint has `thickness_mm` where the
+    file gives it.
     """
     names = [joint.name for joint in arm.joints]
     return {
@@ -27,7 +28,7 @@ def arm_description(arm: Arm) -> dict[str, Any]:
                 "max_velocity": _clean(joint.max_velocity / joint.per_file_unit),
                 "max_acceleration": _clean(joint.max_acceleration / joint.per_file_unit),
                 "max_jerk": _clean(joint.max_jerk / joint.per_file_unit),
-            }
+            } | ({} if joint.thickness_mm is None else {"thickness_mm": joint.thickness_mm})
             for joint in arm.joints
         ],
         "dh": [

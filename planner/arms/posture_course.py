@@ -16,11 +16,11 @@ from planner.arms.posture_samples import COARSE_STEP_MM, usable_postures
 from planner.arms.projection import Pins, project
 from planner.arrays import BoolArray, FloatArray
 
-_SPACINGS = (0.4, 0.2, 0.05, 0.0125)
+_SPACINGS = (0.4, 0.1, 0.02)
 """Between the values of a joint, in shares of the time that the arm takes for a step between sampled radii."""
 _NEIGHBOURS = 3
 _ROUNDS = 2
-_PROJECTION_STEPS = 8
+_PROJECTION_STEPS = 4
 
 
 def cheapest_course(cost: PostureCost, radii_mm: FloatArray, samples: list[FloatArray],

@@ -17,6 +17,7 @@ import numpy as np
 
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.kinematics import Kinematics, kinematics_of
+from planner.arms.link_clearance import link_clearance
 from planner.arms.posture_cost import PostureCost
 from planner.arms.posture_course import cheapest_course, polished_course, smoothed_course
 from planner.arms.posture_samples import (
@@ -36,7 +37,7 @@ _WEIGHTS = PostureWeights()
 _UPRIGHT_PROBES = 16
 _FEWEST_RADII = 2
 """Sampled radii that a further sheet has to add."""
-_NODES = 97
+_NODES = 81
 _ROUNDING_MM = 2.0
 """Corners, where one joint comes to rest and another starts, become bends: the standard deviation of the weights."""
 _DEGREE = 5
@@ -109,13 +110,17 @@ def within_limits(arm: Arm, free: FloatArray, slack: float = 1e-9, first_joint: 
 def posture_field(arm: Arm, weights: PostureWeights = _WEIGHTS) -> PostureField:
     """The field of an arm, computed once. Errors: PlanError where the arm cannot have one, ArmFileError where its file
     contradicts itself."""
-    return posture_sheets(arm, weights)[0]
+    return _sheets(arm, weights)[0]
 
 
-@lru_cache(maxsize=16)
 def posture_sheets(arm: Arm, weights: PostureWeights = _WEIGHTS) -> tuple[PostureField, ...]:
     """The field that reaches over most radii, then fields in other branches, each over as many as it can of those that
     the ones before leave out. Nearly all arms have one. Errors: as `posture_field`."""
+    return _sheets(arm, weights)
+
+
+@lru_cache(maxsize=16)
+def _sheets(arm: Arm, weights: PostureWeights) -> tuple[PostureField, ...]:
     cost, radii, samples = choice_of_postures(arm, weights)
     left_out = np.array([len(postures) > 0 for postures in samples])
     sheets: list[PostureField] = []
@@ -167,7 +172,8 @@ def choice_of_postures(arm: Arm, weights: PostureWeights) -> tuple[PostureCost, 
     radii, samples = sampled_rays(kinematics)
     if not any(len(postures) for postures in samples):
         raise PlanError(f"arm {arm.name}: no posture within the joint limits puts the pen on the paper"
-                        f" at {arm.workspace.inner_radius_mm:g} mm or more from the base axis")
+                        f" at {arm.workspace.inner_radius_mm:g} mm or more from the base axis, with room to lift it by"
+                        f" {arm.pen.lift_mm:g} mm" + (" and the links apart" if link_clearance(arm).names else ""))
     quickness = float(np.median(slowest_direction_mm_s(kinematics, np.concatenate(samples))))
     return PostureCost(kinematics, weights, quickness, float(radii[-1])), radii, samples
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from planner.arms.arm import JointKind, PenHold
 from planner.arms.kinematics import Kinematics
+from planner.arms.link_clearance import link_clearance
 from planner.arms.projection import joint_scale, project
 from planner.arms.quickest_lift import quickest_lifts
 from planner.arrays import BoolArray, FloatArray, IntArray
@@ -15,6 +16,9 @@ COARSE_STEP_MM = 6.0
 
 LIMIT_MARGIN = 0.02
 """Share of a joint's range that postures keep from each end, so that lifts and blends have room."""
+
+LINK_ROOM_MM = 1.0
+"""Room that postures leave between links that have a thickness, for the same."""
 
 _NEAR_LIMIT = 3.0
 """A limit is near where so many lifts would pass it."""
@@ -40,14 +44,16 @@ def slowest_direction_mm_s(kinematics: Kinematics, free: FloatArray) -> FloatArr
 
 
 def usable_postures(kinematics: Kinematics, free: FloatArray) -> BoolArray:
-    """(n,) whether postures on the ray keep limits with a margin, stay clear of singularities and above the paper."""
+    """(n,) whether postures on the ray keep limits with a margin, stay clear of singularities and above the paper, and
+    keep their links apart."""
     arm = kinematics.arm
     joints = arm.complete(free)
     room = LIMIT_MARGIN * (arm.maximum - arm.minimum)
     inside = ((joints >= arm.minimum + room) & (joints <= arm.maximum - room)).all(axis=1)
     clear = slowest_direction_mm_s(kinematics, free) >= arm.workspace.min_tip_speed_mm_s
     above = (kinematics.nodes_mm(free)[:, :-1, 2] >= -1e-6).all(axis=1)
-    usable: BoolArray = inside & clear & above
+    apart = link_clearance(arm).least_mm(free)[0] >= LINK_ROOM_MM
+    usable: BoolArray = inside & clear & above & apart
     if arm.pen.hold is PenHold.TOOL_AXIS:
         usable &= kinematics.tool_axis(free)[:, 2] < -0.5  # the task alone would let the pen point straight up
     usable[usable] = _may_be_raised(kinematics, free[usable], joints[usable])

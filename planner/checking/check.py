@@ -9,6 +9,7 @@ from planner.checking.joints import couplings, position_limits, rate_limits, res
 from planner.checking.pen import (
     above_the_paper,
     lift_notes,
+    links_apart,
     on_the_paper,
     straight_up_and_down,
     stroke_order,
@@ -42,6 +43,7 @@ def check_trajectory(
         *on_the_paper(trajectory, sweeps, tolerance_mm),
         *upright(trajectory, arm, sweeps),
         *above_the_paper(trajectory, sweeps, tolerance_mm),
+        *links_apart(trajectory, sweeps, tolerance_mm),
         *straight_up_and_down(trajectory, sweeps, arm.pen.clearance_mm, tolerance_mm),
         *lift_notes(trajectory, arm, sweeps[0], tolerance_mm),
     ]

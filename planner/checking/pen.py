@@ -57,6 +57,21 @@ def above_the_paper(trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_m
     ]
 
 
+def links_apart(trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_mm: float) -> list[Finding]:
+    """Room between links that have a thickness, where it is least; they may overlap by the tolerance."""
+    thick = [(sweep, sweep.rooms) for sweep in sweeps if sweep.rooms is not None]
+    if not thick:
+        return []
+    sweep, rooms = min(thick, key=lambda entry: float(entry[1].room_mm.min()))
+    point = int(np.argmin(rooms.room_mm))
+    room = float(rooms.room_mm[point])
+    if np.isinf(room):
+        return [Finding("links apart", True, remark="none is folded under the next")]
+    return [Finding("links apart", room >= -tolerance_mm, room, 0.0, "mm",
+                    place_of(trajectory, int(sweep.sample[point]), point, sweep),
+                    f"between {rooms.names[rooms.pair[point]]}, {sweep.interpolation.value} joints")]
+
+
 def straight_up_and_down(
         trajectory: Trajectory, sweeps: Sequence[Sweep], clearance_mm: float, tolerance_mm: float) -> list[Finding]:
     """Below clearance height (less the tolerance) a lifted tip stays over the point where it left the

@@ -112,6 +112,10 @@ def _table(arm: dict[str, Any], obstacle: str) -> list[str]:
         rows.append((joint["name"], joint["kind"], *map(_number, numbers), joint["unit"]))
     lines = _columns(rows)
     lines.append("(theta and alpha in deg, d and a in mm; limits in the joint's unit, per s, s2 and s3)")
+    thick = [f"{joint['name']} {_number(joint['thickness_mm'])} mm"
+             for joint in arm["joints"] if "thickness_mm" in joint]
+    if thick:
+        lines.append(f"links that stay apart, by thickness: {', '.join(thick)}")
     for coupling in arm["coupling"]:
         terms = "".join(f" {'+' if value >= 0 else '-'} {'' if abs(value) == 1 else f'{abs(value):g} '}{name}"
                         for name, value in coupling["coefficients"].items())

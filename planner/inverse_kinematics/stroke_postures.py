@@ -7,6 +7,7 @@ yields smooth joint paths of the same accuracy.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -15,6 +16,7 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.arms.closed_forms import closed_form_postures
 from planner.arms.kinematics import kinematics_of
+from planner.arms.link_clearance import link_clearance
 from planner.arms.posture_field import posture_field, posture_sheets, sheet_references
 from planner.arms.projection import project
 from planner.arrays import BoolArray, FloatArray, IntArray
@@ -89,6 +91,17 @@ def joint_paths(arm: Arm, method: Method, paths: PenPaths, weights: PostureWeigh
     middles[:, :2] -= paths.points(_MIDDLE)[:, 0]
     strayed = np.abs(middles).max(axis=1) > _STRAYED_MM
     return splines, _obstacles(arm, splines, tips, exact, per_path, strayed)
+
+
+def collision_obstacles(arm: Arm, samples: Sequence[FloatArray]) -> dict[int, Obstacle]:
+    """For the paths whose joint samples (n, n_joints) bring links too close to each other or to the paper: where."""
+    kinematics = kinematics_of(arm)
+    obstacles = {}
+    for path, collision in enumerate(link_clearance(arm).collisions(samples)):
+        if collision:
+            x, y, _ = kinematics.tip_mm(kinematics.free_of(samples[path][collision.posture])[None])[0].tolist()
+            obstacles[path] = Obstacle(path, (x, y), str(collision), None, None)
+    return obstacles
 
 
 def _sequence(arm: Arm, method: Method, tips_mm: FloatArray) -> FloatArray:

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from planner.arms.kinematics import Kinematics
+from planner.arms.link_clearance import link_clearance
+from planner.arms.posture_samples import LINK_ROOM_MM
 from planner.arrays import FloatArray
 from planner.timing.hops import Hop, HopRules, Touch, plan_hops
 from planner.timing.leap_choice import coordinate_limits
@@ -58,10 +60,11 @@ def _way(kinematics: Kinematics, limits: Limits, rules: HopRules, start: FloatAr
 
 
 def _is_clear(kinematics: Kinematics, rules: HopRules, start: FloatArray, end: FloatArray) -> bool:
-    """Whether the tip stays above the clearance and the links above the paper on the straight line."""
+    """Whether the tip stays above the clearance, the links above the paper and apart on the straight line."""
     line = start + _PROBES[:, None] * (end - start)
     heights = kinematics.nodes_mm(line)[:, :, 2]
-    return bool(heights[:, -1].min() >= rules.clearance_mm and heights[:, :-1].min() >= 0.0)
+    above = heights[:, -1].min() >= rules.clearance_mm and heights[:, :-1].min() >= 0.0
+    return bool(above and link_clearance(kinematics.arm).least_mm(line)[0].min() >= LINK_ROOM_MM)
 
 
 def _leg(limits: Limits, rules: HopRules, start: FloatArray, end: FloatArray) -> FloatArray:

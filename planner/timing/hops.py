@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from planner.arms.kinematics import Kinematics
+from planner.arms.link_clearance import Collision
 from planner.arms.projection import project
 from planner.arms.quickest_lift import quickest_lifts
 from planner.arrays import BoolArray, FloatArray
@@ -54,7 +55,8 @@ class HopRules:
 class Hop:
     """Joint samples (n_samples, n_joints) of a hop, both ends included, and the durations of its phases in s.
 
-    exact: False where the pen could not be kept on its way, or a joint left its limits.
+    exact: False where the pen could not be kept on its way, or a joint left its limits. collision: where links would
+    come too close.
     """
 
     joints: FloatArray
@@ -62,6 +64,7 @@ class Hop:
     travelling_s: float
     lowering_s: float
     exact: bool
+    collision: Collision | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -3,6 +3,7 @@ product of Denavit-Hartenberg matrices that all of them are measured against."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from math import pi
 from pathlib import Path
@@ -54,6 +55,14 @@ def variant(folder: Path, lengths_mm: tuple[float, float, float, float, float]) 
     arm = read_arm_file(file)
     assert (arm.joints[0].d_mm, *(joint.a_mm for joint in arm.joints[1:])) == lengths_mm
     return arm
+
+
+def thick(arm: Arm, **thickness_mm: float) -> Arm:
+    """The arm with links that thick; unless some are named, with 30 mm for all that have a length."""
+    default = None if thickness_mm else 30.0
+    return replace(arm, joints=tuple(
+        replace(joint, thickness_mm=thickness_mm.get(joint.name, joint.thickness_mm or default))
+        for joint in arm.joints))
 
 
 _LENGTHS_MM = st.sampled_from([0.0, 20.0, 35.0, 50.0, -15.0])

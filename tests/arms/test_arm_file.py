@@ -106,6 +106,7 @@ def test_what_is_left_out_has_its_documented_value(read: Reader) -> None:
     assert servo.backlash == pytest.approx(math.radians(1))
     assert servo.curve == ((pytest.approx(-math.pi / 2), 2400), (pytest.approx(math.pi / 2), 600))
     assert (arm.joints[1].servo, arm.joints[1].bus, arm.park) == (None, None, None)
+    assert all(joint.thickness_mm is None for joint in arm.joints)
 
 
 def test_servos_of_slides_and_buses_are_kept_per_inner_unit(read: Reader) -> None:
@@ -160,6 +161,8 @@ FAULTS = {
     "unknown hold": (('hold = "coupling"', 'hold = "glue"'), ("pen.hold:", "(value: 'glue')")),
     "name with a comma": (('name = "waist"', 'name = "waist,1"'), ("joints[0].name:", "(value: 'waist,1')")),
     "limits swapped": (("min_mm = 10.0", "min_mm = 90.0"), ("joints[1]", "lower limit 90", "upper limit 80")),
+    "no thickness": (("a_mm = 25.0", "a_mm = 25.0\nthickness_mm = 0"), ("joints[2].thickness_mm:", "(value: 0)")),
+    "thickness of nothing": (("a_mm = 25.0", "thickness_mm = 12"), ("joints[2]", "thickness_mm 12 is that of no link")),
     "name twice": (('name = "reach"', 'name = "waist"'), ("joints[1].name: 'waist' is used twice",)),
     "pulses swapped": (("[600.0, 2400.0]", "[2400.0, 600.0]"), ("joints[0].servo.pulse_range_us: 2400", "600")),
     "three pulses": (("[600.0, 2400.0]", "[600.0, 900.0, 2400.0]"), ("joints[0].servo.pulse_range_us:",)),

@@ -15,7 +15,8 @@ from planner.drawing.flatten import extent, flatten, flatten_all
 IDENTITY = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 coordinate = st.floats(-100, 100).map(lambda value: round(value, 3))
 point = st.tuples(coordinate, coordinate)
-affines = st.tuples(*[st.floats(-3, 3)] * 6).map(lambda values: np.array(values).reshape(2, 3))
+affines = st.tuples(*[st.floats(-3, 3).map(lambda value: round(value, 12))] * 6).map(
+    lambda values: np.array(values).reshape(2, 3))  # rounded, as shapely divides by lengths
 
 
 @st.composite
@@ -48,8 +49,10 @@ def test_polyline_and_curve_are_within_the_tolerance_both_ways(outline: Outline,
         return
     line = shapely.LineString(polyline)
     assert shapely.distance(shapely.points(curve), line).max() <= tolerance_mm + 1e-9
-    # Back: between samples, the curve departs from its own chords by far less than the tolerance.
-    samples = shapely.LineString(on_curve(outline, affine, 2000))
+    # Back: between samples, the curve departs from its own chords by far less than the tolerance. Where it doubles back
+    # two samples may be one, which shapely cannot measure to.
+    sampled = on_curve(outline, affine, 2000)
+    samples = shapely.LineString(sampled[np.append(np.any(np.diff(sampled, axis=0) != 0.0, axis=1), True)])
     dense = shapely.points(shapely.get_coordinates(shapely.segmentize(line, max(line.length / 200, 1e-6))))
     assert shapely.distance(dense, samples).max() <= tolerance_mm * 1.01 + 1e-3
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from planner.arrays import FloatArray
 from planner.pipeline import plan
 from planner.settings import PlanSettings
-from planner.timing import path_timing
+from planner.timing import interior_point, path_timing
 from planner.timing.path_timing import minimum_time
 from planner.timing.stroke_motion import motions
 from tests.timing.rig import LIMITS, LINES, joint_curve, polar_paths, problem_of, rate_curve, rates_by_formula
@@ -48,13 +48,13 @@ def test_a_path_whose_newton_system_fails_leaves_the_others_as_they_were(
     whole = minimum_time(problem)
     assert whole.settled.all()
     unknown = int((2 * paths.n_cells[:lost] + 2).sum()) + 3
-    factorise, calls = path_timing.dpbtrf, iter([unknown])
+    factorise, calls = interior_point.dpbtrf, iter([unknown])
 
     def fail_once(band: FloatArray, lower: int) -> tuple[FloatArray, int]:
         factor, info = factorise(band, lower=lower)
         return factor, next(calls, info)
 
-    monkeypatch.setattr(path_timing, "dpbtrf", fail_once)
+    monkeypatch.setattr(interior_point, "dpbtrf", fail_once)
     timing = minimum_time(problem)
     assert timing.settled.tolist() == [index != lost for index in range(len(LINES))]
     others = np.repeat(timing.settled, paths.n_cells)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -60,12 +62,14 @@ def _near_valid(draw: st.DrawFn) -> bytes:
 
 
 @pytest.fixture(scope="module")
-def long_lived(built: Build, tmp_path_factory: pytest.TempPathFactory) -> LockStep:
+def long_lived(built: Build, tmp_path_factory: pytest.TempPathFactory) -> Iterator[LockStep]:
     """One controller that every example adds to."""
-    return in_lock_step(built, tmp_path_factory.mktemp("hostile"))
+    controller = in_lock_step(built, tmp_path_factory.mktemp("hostile"))
+    yield controller
+    controller.emulator.end()
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(_near_valid(), min_size=1, max_size=12), st.booleans())
 def test_frames_that_nearly_fit(long_lived: LockStep, frames: list[bytes], armed: bool) -> None:
     console = Console(long_lived)
@@ -77,7 +81,7 @@ def test_frames_that_nearly_fit(long_lived: LockStep, frames: list[bytes], armed
     _assert_in_range(long_lived, 400.0, 2600.0)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.tuples(st.integers(0, 3), st.integers(1, 300),
                           st.lists(st.integers(0, 0xFFFF), min_size=JOINTS, max_size=JOINTS)), max_size=8))
 def test_key_frames_of_any_pulses_stay_in_the_ranges_set(long_lived: LockStep,
