@@ -30,6 +30,11 @@ def drawn_lines(arm: Arm, positions: FloatArray) -> list[FloatArray]:
     return [tip_mm[begin:end, :2] for begin, end in zip(begins, ends, strict=True)]
 
 
+def is_drawing(arm: Arm, height_mm: float) -> bool:
+    """Whether the pen leaves ink with its tip so high above the paper."""
+    return height_mm <= _GIVES * arm.pen.clearance_mm
+
+
 def write_svg(lines: Sequence[FloatArray], target: Path) -> None:
     """The lines at their true size, as seen from behind the base of the arm. Errors: OutputError."""
     seen = [-line[:, ::-1] for line in lines]  # arm x goes up the page and arm y to the left

@@ -18,6 +18,9 @@ from hardware.streaming.ssc32 import Ssc32
 from planner.arms.arm import Arm
 
 SIMULATED = "sim"
+MUJOCO = "mujoco"
+SIMULATORS = (SIMULATED, MUJOCO)
+"""These are at no port, and move nothing."""
 _NATIVE = "native"
 _STREAMING: dict[str, Callable[[Arm], Controller]] = {
     "maestro": Maestro,
@@ -27,7 +30,7 @@ _STREAMING: dict[str, Callable[[Arm], Controller]] = {
     "dynamixel": dynamixel_bus,
 }
 
-DRIVERS = (SIMULATED, _NATIVE, *_STREAMING)
+DRIVERS = (*SIMULATORS, _NATIVE, *_STREAMING)
 
 
 def calibration_of(name: str, arm: Arm) -> Calibration | None:
@@ -38,7 +41,7 @@ def calibration_of(name: str, arm: Arm) -> Calibration | None:
     if name in _STREAMING:
         return _STREAMING[name](arm).calibration
     undescribed = any(joint.servo is None for joint in arm.joints)
-    return None if name == SIMULATED and undescribed else pulse_calibration(arm)
+    return None if name in SIMULATORS and undescribed else pulse_calibration(arm)
 
 
 def make_driver(name: str, arm: Arm, line: Line, clock: Clock) -> Driver:

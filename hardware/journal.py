@@ -22,9 +22,9 @@ _VERSION = 1
 _COMPLETE = "complete"
 
 
-def journal_path(trajectory: Path, driver: str) -> Path:
-    """`traj.csv.journal`; a rehearsal on the simulated arm keeps its own."""
-    return trajectory.with_name(trajectory.name + (".sim.journal" if driver == "sim" else ".journal"))
+def journal_path(trajectory: Path, *, simulated: bool) -> Path:
+    """`traj.csv.journal`; a rehearsal on a simulated arm keeps its own."""
+    return trajectory.with_name(trajectory.name + (".sim.journal" if simulated else ".journal"))
 
 
 def digest(trajectory: Path) -> str:

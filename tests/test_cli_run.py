@@ -93,10 +93,10 @@ def test_a_dry_run_says_what_would_be_sent_and_sends_nothing(
 
 @pytest.mark.parametrize(("options", "message"), [
     (["--driver", "maestro"], "--driver maestro needs --port; plan ports lists what is plugged in"),
-    (["--driver", "marionette"], "there is no driver 'marionette'; there are sim, native, "),
-    (["--port", "/dev/ttyUSB0"], "the simulated arm is at no port"),
-    (["--driver", "ssc32", "--port", "loop://", "--fast"], "--fast goes with the simulated arm"),
-    (["--driver", "ssc32", "--port", "loop://", "--picture", "d.png"], "--picture goes with the simulated arm"),
+    (["--driver", "marionette"], "there is no driver 'marionette'; there are sim, mujoco, native, "),
+    (["--port", "/dev/ttyUSB0"], "a simulated arm is at no port"),
+    (["--driver", "ssc32", "--port", "loop://", "--fast"], "--fast goes with --driver sim or mujoco"),
+    (["--driver", "ssc32", "--port", "loop://", "--picture", "d.png"], "--picture goes with --driver sim or mujoco"),
     (["--resume", "--from-stroke", "2"], "leave out --from-stroke"),
     (["--resume"], "there is nothing to resume: no journal"),
     (["--from-stroke", "10"], "there is no stroke 10; the drawing has 0 to 9"),

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
+from hardware.drivers import SIMULATORS
 from hardware.journal import Entry, Journal, digest, journal_path, read_journal
 from planner.arms.arm import Arm
 from planner.cli.terminal import print_note, print_warnings
@@ -12,7 +14,7 @@ from planner.errors import OutputError, UsageError
 
 def where_to_begin(options: argparse.Namespace, arm: Arm) -> Entry:
     """From which stroke, of which file and for which arm. Errors: TrajectoryFileError, UsageError."""
-    path = journal_path(options.trajectory, options.driver)
+    path = _path(options)
     sha256 = digest(options.trajectory) if options.trajectory.is_file() else ""  # a pipe has been read already
     if not options.resume:
         return Entry(sha256, arm.name, options.driver, options.from_stroke or 0, "")
@@ -34,7 +36,11 @@ def where_to_begin(options: argparse.Namespace, arm: Arm) -> Entry:
 def open_journal(options: argparse.Namespace, beginning: Entry) -> Journal | None:
     """A new journal in place of the earlier run's; None, with a warning, where none can be written."""
     try:
-        return Journal(journal_path(options.trajectory, options.driver), beginning)
+        return Journal(_path(options), beginning)
     except OutputError as error:
         print_warnings([f"there will be nothing for --resume to go by: {error}"])
         return None
+
+
+def _path(options: argparse.Namespace) -> Path:
+    return journal_path(options.trajectory, simulated=options.driver in SIMULATORS)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import number
 from planner.cli.terminal import Show, print_lines, print_note, progress
@@ -15,9 +16,12 @@ if TYPE_CHECKING:
     import argparse
 
     from hardware.calibration import Calibration
+    from hardware.clock import Clock
     from hardware.driver import Driver
+    from hardware.mujoco_arm import MujocoArm
     from hardware.playing import Progress
     from hardware.programme import Programme
+    from hardware.simulated_arm import SimulatedArm
     from planner.arms.arm import Arm
     from planner.arrays import FloatArray
 
@@ -31,6 +35,7 @@ _EPILOG = """\
 examples:
   plan run traj.csv                         on the simulated arm
   plan run traj.csv --fast --picture drawn.png --servos real
+  plan run traj.csv --driver mujoco --fast --film arm.gif
   plan run traj.csv --driver maestro --port /dev/ttyACM0 --dry-run
   plan run traj.csv --driver native --port /dev/ttyUSB0 --speed-factor 0.5
   plan run traj.csv --driver native --port socket://arm.local:3333 --resume
@@ -38,7 +43,7 @@ examples:
 exit codes: 0 played to its end; 2 not fit to be played; 4 the arm or the line to it failed; 130 stopped"""
 
 _REPORTS_A_SECOND = 10
-_SIMULATED = "sim"
+_FILMS = (".gif", ".mp4")
 EXIT_STOPPED = 130
 
 
@@ -54,7 +59,6 @@ def run(arguments: list[str]) -> int:
     from hardware.port import Line
     from hardware.preflight import servo_values, set_points
     from hardware.programme import make_programme
-    from hardware.simulated_arm import Servos, SimulatedArm
     from planner.arms.arm_file import load_arm
     from planner.cli.controls import KEYS, controls
     from planner.cli.resuming import open_journal, where_to_begin
@@ -62,6 +66,8 @@ def run(arguments: list[str]) -> int:
     from planner.trajectory import read_trajectory
 
     check_pictures(options.picture, options.trajectory)
+    if options.film:
+        check_target(options.film, options.trajectory)
     trajectory = read_trajectory(options.trajectory)
     arm = load_arm(options.arm or trajectory.arm)
     positions = set_points(trajectory, arm, options.trajectory)
@@ -81,7 +87,7 @@ def run(arguments: list[str]) -> int:
         return 0
 
     clock = InstantClock() if options.fast else WallClock()
-    simulated = SimulatedArm(arm, clock, Servos(options.servos)) if options.driver == _SIMULATED else None
+    simulated = _simulated(options, arm, clock)
     driver = simulated or make_driver(options.driver, arm, Line(options.port, options.baud), clock)
     journal = open_journal(options, beginning)
     ended, complete = "broken off", False
@@ -113,9 +119,9 @@ def run(arguments: list[str]) -> int:
 def _parser() -> Parser:
     parser = Parser("plan run", _DESCRIPTION, _EPILOG)
     parser.add_argument("trajectory", type=Path, metavar="traj.csv")
-    parser.add_argument("--driver", default=_SIMULATED, metavar="NAME",
-                        help="what moves the arm: sim, native, maestro, maestro-crc, ssc32, feetech or dynamixel "
-                             "(default: %(default)s)")
+    parser.add_argument("--driver", default="sim", metavar="NAME",
+                        help="what moves the arm: sim, mujoco, native, maestro, maestro-crc, ssc32, feetech or "
+                             "dynamixel (default: %(default)s)")
     parser.add_argument("--port", metavar="PORT|URL",
                         help="where the controller is: a serial port as plan ports lists them, or a URL such as "
                              "socket://HOST:PORT")
@@ -129,32 +135,52 @@ def _parser() -> Parser:
                         help="go on after the last stroke that an earlier run finished, from its journal")
     parser.add_argument("--dry-run", action="store_true",
                         help="examine everything and say what would be sent, but send nothing")
-    parser.add_argument("--fast", action="store_true", help="sim: do not wait for the time of each sample")
+    parser.add_argument("--fast", action="store_true", help="sim, mujoco: do not wait for the time of each sample")
     parser.add_argument("--servos", choices=("ideal", "real"), default="ideal",
                         help="sim: joints that follow exactly within their speeds, or with the resolution, dead band "
                              "and backlash of the arm file and a lag (default: %(default)s)")
     parser.add_argument("--picture", type=Path, action="append", default=[], metavar="FILE",
-                        help="sim: what was drawn, as .svg at its true size, as .png or .pdf beside what was wanted; "
-                             "may be given more than once")
+                        help="sim, mujoco: what was drawn, as .svg at its true size, as .png or .pdf beside what was "
+                             "wanted; may be given more than once")
+    parser.add_argument("--film", type=Path, metavar="FILE", help="mujoco: a .gif or .mp4 of the arm at work")
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary")
     return parser
 
 
 def _refuse_contradictions(options: argparse.Namespace) -> None:
     """Errors: UsageError."""
-    from hardware.drivers import DRIVERS
+    from hardware.drivers import DRIVERS, MUJOCO, SIMULATED, SIMULATORS
 
     if options.driver not in DRIVERS:
         raise UsageError(f"there is no driver '{options.driver}'; there are {', '.join(DRIVERS)}")
-    if options.driver == _SIMULATED and (options.port or options.baud):
-        raise UsageError("the simulated arm is at no port; name what is there with --driver")
-    if options.driver != _SIMULATED and not options.port and not options.dry_run:
+    simulated = options.driver in SIMULATORS
+    if simulated and (options.port or options.baud):
+        raise UsageError("a simulated arm is at no port; name what is there with --driver")
+    if not simulated and not options.port and not options.dry_run:
         raise UsageError(f"--driver {options.driver} needs --port; plan ports lists what is plugged in")
-    for name, given in (("fast", options.fast), ("servos", options.servos != "ideal"), ("picture", options.picture)):
-        if given and options.driver != _SIMULATED:
-            raise UsageError(f"--{name} goes with the simulated arm, not with --driver {options.driver}")
+    for name, given, drivers in (
+            ("fast", options.fast, SIMULATORS), ("picture", options.picture, SIMULATORS),
+            ("servos", options.servos != "ideal", (SIMULATED,)), ("film", options.film, (MUJOCO,))):
+        if given and options.driver not in drivers:
+            raise UsageError(f"--{name} goes with --driver {' or '.join(drivers)}, not with {options.driver}")
+    if options.film and options.film.suffix.lower() not in _FILMS:
+        raise UsageError(f"{options.film}: a film ends in {' or '.join(_FILMS)}")
     if options.resume and options.from_stroke is not None:
         raise UsageError("--resume finds its stroke by itself; leave out --from-stroke")
+
+
+def _simulated(options: argparse.Namespace, arm: Arm, clock: Clock) -> SimulatedArm | MujocoArm | None:
+    from hardware.drivers import MUJOCO, SIMULATED
+
+    if options.driver == SIMULATED:
+        from hardware.simulated_arm import Servos, SimulatedArm
+
+        return SimulatedArm(arm, clock, Servos(options.servos))
+    if options.driver == MUJOCO:
+        from hardware.mujoco_arm import MujocoArm
+
+        return MujocoArm(arm, clock, options.film)
+    return None
 
 
 def _told_to_servos(calibration: Calibration | None, programme: Programme, arm: Arm) -> FloatArray | None:
@@ -186,7 +212,7 @@ def _verdict(options: argparse.Namespace, arm: Arm, programme: Programme, calibr
 
 
 def _announce(options: argparse.Namespace, programme: Programme, arm: Arm, keys: str) -> None:
-    if options.driver != _SIMULATED:
+    if options.port:
         approach_s = programme.approach / programme.rate_hz
         print_note(f"where the arm stands is not known: its servos are attached at the park pose "
                    f"({_posture(arm, programme.park)}), from which it takes {approach_s:.1f} s to the drawing")

@@ -65,9 +65,8 @@ def test_what_is_no_journal_is_refused(tmp_path: Path, content: bytes) -> None:
 
 
 def test_a_rehearsal_leaves_the_journal_of_the_arm_alone() -> None:
-    assert journal_path(Path("a/traj.csv"), "native") == Path("a/traj.csv.journal")
-    assert journal_path(Path("a/traj.csv"), "maestro") == Path("a/traj.csv.journal")
-    assert journal_path(Path("a/traj.csv"), "sim") == Path("a/traj.csv.sim.journal")
+    assert journal_path(Path("a/traj.csv"), simulated=False) == Path("a/traj.csv.journal")
+    assert journal_path(Path("a/traj.csv"), simulated=True) == Path("a/traj.csv.sim.journal")
 
 
 def test_a_changed_file_has_another_digest(tmp_path: Path) -> None:
