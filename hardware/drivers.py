@@ -8,6 +8,7 @@ from functools import partial
 from hardware.calibration import Calibration, pulse_calibration
 from hardware.clock import Clock
 from hardware.driver import Driver
+from hardware.gentle_move import come_from
 from hardware.port import Line
 from hardware.streaming.controller import Controller
 from hardware.streaming.driver import StreamingDriver
@@ -16,6 +17,7 @@ from hardware.streaming.feetech import feetech_bus
 from hardware.streaming.maestro import Maestro
 from hardware.streaming.ssc32 import Ssc32
 from planner.arms.arm import Arm
+from planner.arrays import FloatArray
 
 SIMULATED = "sim"
 _NATIVE = "native"
@@ -51,6 +53,10 @@ def make_driver(name: str, arm: Arm, line: Line, clock: Clock) -> Driver:
         from hardware.native.driver import NativeDriver
 
         calibration = pulse_calibration(arm)
-        return NativeDriver(lambda: line.open(BAUD), calibration.to_servos, calibration.addresses, calibration.ranges,
-                            clock)
+
+        def way(pulses_us: FloatArray, pose: FloatArray, rate_hz: float) -> FloatArray:
+            return come_from(arm, calibration.to_joints(pulses_us), pose, rate_hz)
+
+        return NativeDriver(lambda: line.open(BAUD), calibration.to_servos, way, calibration.addresses,
+                            calibration.ranges, clock)
     return StreamingDriver(arm, _STREAMING[name](arm), line, clock)

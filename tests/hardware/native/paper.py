@@ -8,7 +8,7 @@ from scipy.interpolate import CubicSpline
 from hardware.calibration import pulse_calibration
 from hardware.drawn import drawn_lines
 from planner.arms.arm import Arm
-from planner.arrays import FloatArray
+from planner.arrays import BoolArray, FloatArray
 from tests.hardware.emulator.emulator import Emulator, Pulses
 
 _STEP_S = 0.002
@@ -23,13 +23,21 @@ def ink(emulator: Emulator, arm: Arm) -> list[FloatArray]:
     channels = [emulator.pulses(channel) for channel in calibration.addresses]
     times_s = np.arange(max(one.starts_s[0] for one in channels), min(one.starts_s[-1] for one in channels), _STEP_S)
     held = np.logical_and.reduce([_is_held(one, times_s) for one in channels])
-    pulses_us = np.column_stack([CubicSpline(one.starts_s, one.widths_us)(times_s) for one in channels])
-    joints = calibration.to_joints(pulses_us)
     pieces = np.split(np.arange(len(times_s)), np.flatnonzero(held[1:] != held[:-1]) + 1)
-    return [line for piece in pieces if held[piece[0]] for line in drawn_lines(arm, joints[piece])]
+    lines: list[FloatArray] = []
+    for piece in (times_s[piece] for piece in pieces if held[piece[0]]):
+        pulses_us = np.column_stack([_between(one, piece) for one in channels])
+        lines += drawn_lines(arm, calibration.to_joints(pulses_us))
+    return lines
 
 
-def _is_held(one: Pulses, times_s: FloatArray) -> FloatArray:
+def _between(one: Pulses, times_s: FloatArray) -> FloatArray:
+    near = (one.starts_s > times_s[0] - _LOOSE_S) & (one.starts_s < times_s[-1] + _LOOSE_S)
+    widths_us: FloatArray = CubicSpline(one.starts_s[near], one.widths_us[near])(times_s)
+    return widths_us
+
+
+def _is_held(one: Pulses, times_s: FloatArray) -> BoolArray:
     before = np.searchsorted(one.starts_s, times_s, side="right") - 1
-    held: FloatArray = np.diff(one.starts_s)[np.clip(before, 0, len(one.starts_s) - 2)] < _LOOSE_S
+    held: BoolArray = np.diff(one.starts_s)[np.clip(before, 0, len(one.starts_s) - 2)] < _LOOSE_S
     return held

@@ -29,13 +29,15 @@ _STROKES = 5
 _DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 30">
 <path d="M2 20 C 10 0 20 30 30 12"/><path d="M42 6h0"/><circle cx="42" cy="20" r="8"/>
 <path d="M58 28 L70 4 L82 28"/><path d="M64 20h12"/></svg>"""
+_WORST_MM = 0.15
+"""A pulse is right to half a step of 0.5 us: 0.025 degrees of each of the joints, which can add up to this."""
 _PLAYS_ON_S = 0.8
 """The controller has motion for less than this."""
 
 
 @pytest.fixture(scope="session")
 def planned(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """A drawing and its trajectory. Near the base, where half a microsecond moves the tip by less than 0.1 mm."""
+    """A drawing and its trajectory."""
     folder = tmp_path_factory.mktemp("planned")
     drawing, csv = folder / "drawing.svg", folder / "traj.csv"
     drawing.write_text(_DRAWING)
@@ -95,14 +97,16 @@ def test_what_the_pins_drew_is_the_drawing(csv: Path, wanted: list[FloatArray], 
     assert "the arm is parked" in said
     drawn = ink(emulator, _ARM)
     assert len(drawn) == _STROKES
-    assert likeness(drawn, wanted).largest_mm < 0.1
+    assert likeness(drawn, wanted).most_mm < 0.1
+    assert likeness(drawn, wanted).largest_mm < _WORST_MM
     assert _entries(csv) | {"next_stroke": _STROKES, "ended": "complete"} == _entries(csv)
 
 
 @pytest.mark.parametrize("fault", ["killed", "unplugged", "reset", "interrupted"])
 def test_whatever_breaks_a_run_off_resume_finishes_the_drawing(
         fault: str, csv: Path, wanted: list[FloatArray], pty: tuple[Emulator, Path]) -> None:
-    """Nothing is drawn twice beyond one stroke, and no line is where none was wanted."""
+    """No line is where none was wanted. Drawn twice are the stroke that was not finished and, where nobody was left to
+    tell the controller to stop, what it still had in its queue."""
     emulator, device = pty
     process = _started(csv, device)
     _wait_for(lambda: _next_stroke(csv) >= 2 or process.poll() is not None)
@@ -125,11 +129,11 @@ def test_whatever_breaks_a_run_off_resume_finishes_the_drawing(
     assert "Traceback" not in told
     resumed = _next_stroke(csv)
     assert 2 <= resumed < _STROKES
+    time.sleep(_PLAYS_ON_S)
     if fault == "unplugged":
-        time.sleep(_PLAYS_ON_S)
         emulator.move_cable()
         _wait_for(device.exists)
     _resume(csv, device)
     drawn = ink(emulator, _ARM)
-    assert len(drawn) <= _STROKES + 1
-    assert likeness(drawn, wanted).largest_mm < 0.3
+    assert len(drawn) <= _STROKES + (2 if fault in ("killed", "unplugged") else 1)
+    assert likeness(drawn, wanted).largest_mm < _WORST_MM
