@@ -35,7 +35,7 @@ DRIVERS = (SIMULATED, _NATIVE, *_STREAMING)
 def calibration_of(name: str, arm: Arm) -> Calibration | None:
     """What the servos of that driver are told; None for an arm that is only simulated and says nothing of servos.
 
-    Errors: HardwareError where the arm file does not say how joints are moved.
+    Errors: ArmFileError where the arm file does not say how joints are moved.
     """
     if name in _STREAMING:
         return _STREAMING[name](arm).calibration
@@ -46,7 +46,7 @@ def calibration_of(name: str, arm: Arm) -> Calibration | None:
 def make_driver(name: str, arm: Arm, line: Line, clock: Clock) -> Driver:
     """The driver of that name at the end of a line, not yet connected.
 
-    Errors: HardwareError where the arm file does not say how joints are moved.
+    Errors: ArmFileError where the arm file does not say how joints are moved.
     """
     if name == _NATIVE:
         from hardware.codecs.native import BAUD

@@ -79,6 +79,18 @@ def test_what_is_refused_sends_not_one_byte(
     assert not csv.with_name("traj.csv.journal").exists()
 
 
+@pytest.mark.parametrize(("arm", "driver", "key"), [
+    ("so101", "native", "servo"), ("so101", "maestro", "servo"), ("drawing_arm", "feetech", "bus")])
+def test_an_arm_that_does_not_say_how_it_is_moved_is_told_what_is_missing(
+        arm: str, driver: str, key: str, planned: Planned, capsys: pytest.CaptureFixture[str]) -> None:
+    csv = planned(arm)
+    with pty_line(MaestroModel()) as far:
+        assert main(["run", str(csv), "--driver", driver, "--port", far.name]) == 2
+        far.finish()
+    assert far.received == b""
+    assert f"add to that joint in the arm file: {key} = {{" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("damage", [b"", b"\x00\xff\n", b"[1]\n", b'{"journal": 1, "next_stroke": "2"}\n'])
 def test_a_damaged_journal_is_no_journal(damage: bytes, planned: Planned, capsys: pytest.CaptureFixture[str]) -> None:
     csv = planned("drawing_arm")

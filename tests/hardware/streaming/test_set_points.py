@@ -52,8 +52,7 @@ def test_set_points_arrive_in_order_and_right_to_half_a_step(name: str) -> None:
         driver.flush()
         driver.close()
         far.finish()
-    told = told(model, len(positions))
-    assert np.abs(told - calibration.to_servos(positions)).max() <= STEPS[name] / 2 + 1e-9
+    assert np.abs(told(model, len(positions)) - calibration.to_servos(positions)).max() <= STEPS[name] / 2 + 1e-9
     numbers = [int(number) for number in re.findall(r"\d+", driver.statistics()[0])]
     assert numbers[0] == driver.executed() == 200
     assert numbers[2] <= numbers[3]
