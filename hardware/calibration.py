@@ -13,7 +13,7 @@ import numpy as np
 
 from planner.arms.arm import Arm, BusServo, Joint, Servo
 from planner.arrays import FloatArray
-from planner.errors import HardwareError
+from planner.errors import ArmFileError, HardwareError
 
 _ROUNDING = 1e-6
 """Beyond its range by no more than this, in us or counts, a value is at its end: angles come from converted degrees."""
@@ -79,14 +79,14 @@ class Calibration:
 
 
 def pulse_calibration(arm: Arm) -> Calibration:
-    """The arm's servos as its file describes them. Errors: HardwareError naming the key that a joint lacks."""
+    """The arm's servos as its file describes them. Errors: ArmFileError naming the key that a joint lacks."""
     servos = [_known(arm, joint, "servo", joint.servo) for joint in arm.joints]
     return Calibration("us", tuple(servo.channel for servo in servos),
                        tuple(_pulse_curve(joint, servo) for joint, servo in zip(arm.joints, servos, strict=True)))
 
 
 def count_calibration(arm: Arm) -> Calibration:
-    """The arm's bus servos as its file describes them. Errors: HardwareError naming the key that a joint lacks."""
+    """The arm's bus servos as its file describes them. Errors: ArmFileError naming the key that a joint lacks."""
     servos = [_known(arm, joint, "bus", joint.bus) for joint in arm.joints]
     return Calibration("counts", tuple(servo.id for servo in servos),
                        tuple(_count_curve(joint, servo) for joint, servo in zip(arm.joints, servos, strict=True)))
@@ -96,8 +96,8 @@ def _known(arm: Arm, joint: Joint, key: str, servo: _Described | None) -> _Descr
     if servo is None:
         keys = {"servo": f"pulse_at_zero_us = ..., us_per_{joint.file_unit} = ..., pulse_range_us = [..., ...]",
                 "bus": f"id = ..., count_at_zero = ..., counts_per_{joint.file_unit} = ..., count_range = [..., ...]"}
-        raise HardwareError(f"arm '{arm.name}' does not say how joint {joint.name} is moved; add to that joint in the "
-                            f"arm file: {key} = {{ {keys[key]} }}")
+        raise ArmFileError(f"arm '{arm.name}'", [f"does not say how joint {joint.name} is moved; add to that joint in "
+                                                 f"the arm file: {key} = {{ {keys[key]} }}"])
     return servo
 
 

@@ -8,6 +8,7 @@ from functools import partial
 from hardware.calibration import Calibration, pulse_calibration
 from hardware.clock import Clock
 from hardware.driver import Driver
+from hardware.gentle_move import come_from
 from hardware.port import Line
 from hardware.streaming.controller import Controller
 from hardware.streaming.driver import StreamingDriver
@@ -16,6 +17,7 @@ from hardware.streaming.feetech import feetech_bus
 from hardware.streaming.maestro import Maestro
 from hardware.streaming.ssc32 import Ssc32
 from planner.arms.arm import Arm
+from planner.arrays import FloatArray
 
 SIMULATED = "sim"
 MUJOCO = "mujoco"
@@ -36,7 +38,7 @@ DRIVERS = (*SIMULATORS, _NATIVE, *_STREAMING)
 def calibration_of(name: str, arm: Arm) -> Calibration | None:
     """What the servos of that driver are told; None for an arm that is only simulated and says nothing of servos.
 
-    Errors: HardwareError where the arm file does not say how joints are moved.
+    Errors: ArmFileError where the arm file does not say how joints are moved.
     """
     if name in _STREAMING:
         return _STREAMING[name](arm).calibration
@@ -47,13 +49,17 @@ def calibration_of(name: str, arm: Arm) -> Calibration | None:
 def make_driver(name: str, arm: Arm, line: Line, clock: Clock) -> Driver:
     """The driver of that name at the end of a line, not yet connected.
 
-    Errors: HardwareError where the arm file does not say how joints are moved.
+    Errors: ArmFileError where the arm file does not say how joints are moved.
     """
     if name == _NATIVE:
         from hardware.codecs.native import BAUD
         from hardware.native.driver import NativeDriver
 
         calibration = pulse_calibration(arm)
-        return NativeDriver(lambda: line.open(BAUD), calibration.to_servos, calibration.addresses, calibration.ranges,
-                            clock)
+
+        def way(pulses_us: FloatArray, pose: FloatArray, rate_hz: float) -> FloatArray:
+            return come_from(arm, calibration.to_joints(pulses_us), pose, rate_hz)
+
+        return NativeDriver(lambda: line.open(BAUD), calibration.to_servos, way, calibration.addresses,
+                            calibration.ranges, clock)
     return StreamingDriver(arm, _STREAMING[name](arm), line, clock)

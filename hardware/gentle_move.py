@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 
 import numpy as np
 
@@ -17,6 +18,8 @@ _SHARE = 0.2
 _LIFTS = (1.0, 2.0, 4.0, 8.0)
 """How far up both ends are taken, in lift heights, where the straight way would come too near the paper."""
 _SAME = 1e-7
+_BEYOND = 0.01
+"""In rad or mm: servos round where they stand."""
 _GRAZE_MM = 0.01
 """So much below the clearance, or below the paper, is rounding."""
 
@@ -46,6 +49,15 @@ def gentle_move(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -
             return points
     raise PlanError(f"no way was found for arm '{arm.name}' from {_shown(arm, start)} to {_shown(arm, goal)} with its "
                     "pen in the air (another [park] pose in its file may do)")
+
+
+def come_from(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -> FloatArray:
+    """As `gentle_move`, from wherever the arm happens to stand: straight where no way through the air is found, or
+    none can begin because a joint was moved by hand beyond its limits."""
+    if np.all((start >= arm.minimum - _BEYOND) & (start <= arm.maximum + _BEYOND)):
+        with suppress(PlanError):
+            return gentle_move(arm, start, goal, rate_hz)
+    return _straight(arm, start, goal, rate_hz)
 
 
 def _straight(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -> FloatArray:

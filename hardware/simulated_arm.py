@@ -49,7 +49,7 @@ class SimulatedArm:
     ahead_s = 0.0
 
     def __init__(self, arm: Arm, clock: Clock, servos: Servos = Servos.IDEAL) -> None:
-        """Errors: HardwareError where real servos are asked for that the arm file does not describe."""
+        """Errors: ArmFileError where real servos are asked for that the arm file does not describe."""
         self._arm, self._clock = arm, clock
         self._servos = _Ideal(arm) if servos is Servos.IDEAL else _Real(arm)
         self._target: FloatArray | None = None

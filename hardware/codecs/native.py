@@ -85,7 +85,8 @@ class Channel:
 
 @dataclass(frozen=True, slots=True)
 class Info:
-    """The controller's answer to HELLO. shortest, longest: pulses that it makes at all, in 1/16 us."""
+    """The controller's answer to HELLO. shortest, longest: pulses that it makes at all, in 1/16 us; pulses: those that
+    it makes now, of the channels attached."""
 
     order: int
     session: int
@@ -94,6 +95,7 @@ class Info:
     channels: int
     shortest: int
     longest: int
+    pulses: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,8 +189,9 @@ def _decode(stuffed: bytes) -> Info | Status | None:
     kind, sequence, payload = body[0], body[1], body[2:-2]
     try:
         if kind == _INFO:
-            session, protocol, major, minor, channels, shortest, longest = _INFO_PAYLOAD.unpack(payload)
-            return Info(sequence, session, protocol, (major, minor), channels, shortest, longest)
+            session, protocol, major, minor, channels, shortest, longest = _INFO_PAYLOAD.unpack_from(payload)
+            pulses = struct.unpack(f"<{(len(payload) - _INFO_PAYLOAD.size) // 2}H", payload[_INFO_PAYLOAD.size:])
+            return Info(sequence, session, protocol, (major, minor), channels, shortest, longest, pulses)
         if kind == _STATUS:
             session, state, fault, result, expected, free, flags, reached = _STATUS_PAYLOAD.unpack(payload)
             return Status(sequence, session, State(state), Fault(fault), Result(result), expected, free,

@@ -335,7 +335,9 @@ uint8_t machine_answer(uint8_t *body)
         body[7] = MAX_CHANNELS;
         put_word(body + 8, SHORTEST_PULSE);
         put_word(body + 10, LONGEST_PULSE);
-        return 12;
+        for (uint8_t i = 0; i < attached; i++)
+            put_word(body + 12 + 2 * i, pose[i]);
+        return 12 + 2 * attached;
     }
     body[0] = STATUS;
     body[4] = state;

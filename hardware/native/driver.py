@@ -28,8 +28,8 @@ _UNANSWERED = 20
 """Questions without an answer after which nobody is there. Counted, since a host that was paused cannot trust time."""
 _BOOT_ATTEMPTS = 50
 """Opening the line resets an Arduino, whose boot loader listens for up to two seconds before the firmware does."""
-_RETURN_S = 4.0
-"""Duration of the way from wherever an earlier run left the arm to where this one sets out."""
+_RETURN_HZ = 50.0
+"""Of the set points from where an earlier run left the arm to where this one sets out."""
 _CLOSING_ATTEMPTS = 10
 
 _FAULTS = {
@@ -51,15 +51,17 @@ class NativeDriver:
     """An arm on the firmware of hardware/firmware. See hardware/driver.py for what the methods promise.
 
     open_line: opens the line at native.BAUD. pulses_us: positions (n_joints,) to pulses (n_joints,), in chain order.
-    channels: the channel of every joint. ranges_us: (n_joints, 2), the shortest and longest pulse of every joint,
-    which the controller enforces as well.
+    way: way(held_us, pose, rate_hz), positions (n, n_joints) at that rate from where pulses (n_joints,) hold the arm to
+    `pose`. channels: the channel of every joint. ranges_us: (n_joints, 2), the shortest and longest pulse of every
+    joint, which the controller enforces as well.
     """
 
     ahead_s = _AHEAD_S
 
     def __init__(self, open_line: Callable[[], Transport], pulses_us: Callable[[FloatArray], FloatArray],
-                 channels: Sequence[int], ranges_us: FloatArray, clock: Clock) -> None:
-        self._open_line, self._pulses_us, self._clock = open_line, pulses_us, clock
+                 way: Callable[[FloatArray, FloatArray, float], FloatArray], channels: Sequence[int],
+                 ranges_us: FloatArray, clock: Clock) -> None:
+        self._open_line, self._pulses_us, self._way, self._clock = open_line, pulses_us, way, clock
         self._channels, self._ranges_us = tuple(channels), ranges_us
         self._line: Transport | None = None
         self._link = Link()
@@ -94,10 +96,8 @@ class NativeDriver:
             while self._now().state is not State.READY:
                 self._exchange()
             self._prepare()
-        else:  # held since an earlier run: go to where this one sets out, as slowly as befits a path not checked
-            self._prepare()
-            self._push(pulses, _RETURN_S, 0)
-            self.flush()
+        else:
+            self._come_from_before(pose)
 
     def send(self, positions: FloatArray, duration_s: float) -> None:
         """Set points closer than the queue can hold for long enough are merged: the last of them stands for all."""
@@ -171,6 +171,25 @@ class NativeDriver:
         if max(self._channels) >= self._info.channels:
             raise HardwareError(f"the arm uses channel {max(self._channels)}; the controller has channels 0 to"
                                 f" {self._info.channels - 1}")
+
+    def _come_from_before(self, pose: FloatArray) -> None:
+        """From where an earlier run left the arm, perhaps with its pen on the paper, to where this one sets out."""
+        while self._now().state is State.ARMING:
+            self._exchange()
+        self._introduce()  # once more: now it tells the pulses of all servos, which stand
+        held_us = np.array([self._standing()[channel] for channel in self._channels]) / native.UNITS_PER_US
+        self._prepare()
+        for positions in self._way(held_us, pose, _RETURN_HZ):
+            self.send(positions, 1 / _RETURN_HZ)
+        self.flush()
+        self._sent = self._done = 0
+
+    def _standing(self) -> tuple[int, ...]:
+        """Pulses by channel when the controller introduced itself."""
+        if self._info is None or len(self._info.pulses) <= max(self._channels):
+            raise HardwareError("the controller does not tell where its servos stand: flash the firmware that belongs "
+                                "to this program")
+        return self._info.pulses
 
     def _configure(self, pulses: tuple[int, ...]) -> None:
         ranges = [(pulse, pulse) for pulse in pulses]  # what no joint is on stands still

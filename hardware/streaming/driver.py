@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from hardware.clock import Clock
+from hardware.gentle_move import come_from
 from hardware.port import Line, Port
 from hardware.streaming.controller import Controller
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError
 
-_GENTLE = 0.2
-"""Of the speed limits: how fast the arm goes to its first pose from wherever it stands."""
-_GLIDE_PERIOD_S = 0.02
+_COMING_PERIOD_S = 0.02
 _ASK_EVERY_S = 0.5
 _PATIENCE_S = 1.0
 _UNANSWERED = 3
@@ -42,7 +39,7 @@ class StreamingDriver:
         values = self._controller.calibration.to_servos(pose)
         self._port = self._line.open(self._controller.usual_baud)
         self._port.discard_input()
-        self._glide(self._controller.attach(self._port, values, self._clock), values)
+        self._come_from(self._controller.attach(self._port, values, self._clock), pose)
         self._controller.confirm(self._port, values, self._clock)
 
     def send(self, positions: FloatArray, duration_s: float) -> None:
@@ -84,21 +81,14 @@ class StreamingDriver:
             raise HardwareError(f"{self._line.name}: the line is not open")
         return self._port
 
-    def _glide(self, standing: FloatArray, values: FloatArray) -> None:
-        """From where the servos stand to `values`, smoothly, all joints arriving together.
-
-        The pace 6 u (1 - u) is 1.5 at its quickest, which is at the gentle share of the slowest joint's limit.
-        """
+    def _come_from(self, standing: FloatArray, pose: FloatArray) -> None:
+        """Slowly from where the servos stand, perhaps with the pen on the paper, to `pose`."""
         calibration = self._controller.calibration
-        distance = np.abs(calibration.to_joints(values) - calibration.to_joints(standing))
-        duration_s = float(np.max(1.5 * distance / (_GENTLE * self._arm.max_velocity)))
-        n = math.ceil(duration_s / _GLIDE_PERIOD_S)
+        way = come_from(self._arm, calibration.to_joints(standing), pose, 1 / _COMING_PERIOD_S)
         start_s = self._clock.now_s()
-        for k in range(1, n + 1):
-            u = k / n
-            self._clock.sleep_until(start_s + k * _GLIDE_PERIOD_S)
-            self._connected().write(self._controller.set_point(
-                standing + (3 * u**2 - 2 * u**3) * (values - standing), _GLIDE_PERIOD_S))
+        for k, values in enumerate(calibration.to_servos(way), start=1):
+            self._clock.sleep_until(start_s + k * _COMING_PERIOD_S)
+            self._connected().write(self._controller.set_point(values, _COMING_PERIOD_S))
 
     def _question(self, port: Port, now_s: float) -> bytes:
         """The question that is due now, if any, once the one before is answered or given up."""

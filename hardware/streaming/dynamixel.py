@@ -12,5 +12,5 @@ _X_SERIES = Registers(torque=64, goal=116, present=132, ramps=((108, 4), (112, 4
 
 
 def dynamixel_bus(arm: Arm) -> ServoBus:
-    """The arm's servos on a Dynamixel bus. Errors: HardwareError naming the key that a joint lacks."""
+    """The arm's servos on a Dynamixel bus. Errors: ArmFileError naming the key that a joint lacks."""
     return ServoBus(arm, dynamixel, _X_SERIES, _USUAL_BAUD)

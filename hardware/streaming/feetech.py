@@ -12,5 +12,5 @@ _STS = Registers(torque=40, goal=42, present=56, ramps=((41, 1), (46, 2)))
 
 
 def feetech_bus(arm: Arm) -> ServoBus:
-    """The arm's servos on a Feetech bus. Errors: HardwareError naming the key that a joint lacks."""
+    """The arm's servos on a Feetech bus. Errors: ArmFileError naming the key that a joint lacks."""
     return ServoBus(arm, feetech, _STS, _USUAL_BAUD)

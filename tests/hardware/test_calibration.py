@@ -13,7 +13,7 @@ from hardware.calibration import count_calibration, pulse_calibration
 from planner.arms.arm import Arm, BusServo, Servo
 from planner.arms.arm_file import known_arms, load_arm
 from planner.arrays import FloatArray
-from planner.errors import HardwareError
+from planner.errors import ArmFileError, HardwareError
 
 ARM = load_arm("three_joint")
 TABLE = ((-1.0, 500.0), (-0.5, 800.0), (0.5, 1500.0), (2.0, 2300.0))
@@ -99,7 +99,7 @@ def test_arms_that_come_along_reach_their_whole_range_or_say_what_their_file_lac
                                  (count_calibration, [joint.bus for joint in arm.joints])):
         if None in described:
             key = "servo" if calibrate is pulse_calibration else "bus"
-            with pytest.raises(HardwareError, match=rf"joint {arm.joints[0].name} .* arm file: {key} = {{"):
+            with pytest.raises(ArmFileError, match=rf"joint {arm.joints[0].name} .* arm file: {key} = {{"):
                 calibrate(arm)
         else:
             calibration = calibrate(arm)

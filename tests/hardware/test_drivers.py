@@ -8,7 +8,7 @@ from hardware.clock import InstantClock
 from hardware.drivers import DRIVERS, SIMULATED, SIMULATORS, calibration_of, make_driver
 from hardware.port import Line
 from planner.arms.arm_file import load_arm
-from planner.errors import HardwareError
+from planner.errors import ArmFileError
 
 UNDESCRIBED = load_arm("scara")
 ON_BUS = ("feetech", "dynamixel")
@@ -17,7 +17,7 @@ ON_BUS = ("feetech", "dynamixel")
 @pytest.mark.parametrize("name", [name for name in DRIVERS if name not in SIMULATORS])
 def test_an_arm_that_does_not_say_how_it_is_moved_is_told_which_key_to_add(name: str) -> None:
     key = "bus" if name in ON_BUS else "servo"
-    with pytest.raises(HardwareError, match=rf"joint q1 is moved; add to that joint in the arm file: {key} = {{"):
+    with pytest.raises(ArmFileError, match=rf"joint q1 is moved; add to that joint in the arm file: {key} = {{"):
         calibration_of(name, UNDESCRIBED)
 
 

@@ -9,7 +9,7 @@ from hardware.clock import InstantClock
 from hardware.simulated_arm import Servos, SimulatedArm
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
-from planner.errors import HardwareError
+from planner.errors import ArmFileError, HardwareError
 
 REST = np.radians([0.0, 60.0, -60.0, -60.0, -30.0])
 
@@ -95,5 +95,5 @@ def test_real_servos_ignore_what_is_within_their_dead_band_and_play(arm: Arm) ->
 
 
 def test_real_servos_have_to_be_described() -> None:
-    with pytest.raises(HardwareError, match="does not say how joint q1 is moved"):
+    with pytest.raises(ArmFileError, match="does not say how joint q1 is moved"):
         SimulatedArm(load_arm("scara"), InstantClock(), Servos.REAL)

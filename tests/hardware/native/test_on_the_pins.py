@@ -205,8 +205,8 @@ def test_ranges_hold_on_the_controller(controller: LockStep) -> None:
 
 @pytest.mark.parametrize("joints", [1, 2, 3, 6, 7, 8])
 def test_any_number_of_joints(controller: LockStep, joints: int) -> None:
-    driver = NativeDriver(lambda: controller, lambda positions: 1000.0 + positions, range(joints),
-                          np.tile((600.0, 2400.0), (joints, 1)), controller)
+    driver = NativeDriver(lambda: controller, lambda positions: 1000.0 + positions, lambda held_us, pose, _: pose[None],
+                          range(joints), np.tile((600.0, 2400.0), (joints, 1)), controller)
     driver.connect(np.zeros(joints))
     since_s = controller.now_s()
     for along in np.linspace(0.0, 1.0, 101)[1:]:

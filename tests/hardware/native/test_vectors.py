@@ -34,7 +34,9 @@ _HOST_FRAMES = {
     "END": native.sequenced(End(), 17),
 }
 _CONTROLLER_FRAMES = {
-    "INFO of protocol 1, firmware 1.0, 8 channels of 400 to 2600 us": Info(1, 0x1234, 1, (1, 0), 8, 6400, 41600),
+    "INFO of protocol 1, firmware 1.0, 8 channels of 400 to 2600 us":
+        Info(1, 0x1234, 1, (1, 0), 8, 6400, 41600, ()),
+    "INFO with two channels at 1500, 1250.5 us": Info(1, 0x1234, 1, (1, 0), 8, 6400, 41600, (24000, 20008)),
     "STATUS of RUN: 7 expected, 12 free, 300 reached":
         Status(5, 0x1234, State.RUN, Fault.NONE, Result.DONE, 7, 12, False, 300),
     "STATUS of FAULT, stopped, with a gap, last order refused":

@@ -25,7 +25,7 @@ MAKERS = {"maestro": MaestroModel, "maestro-crc": lambda: MaestroModel(crc=True)
 STEPS = {"maestro": 0.25, "maestro-crc": 0.25, "ssc32": 1.0, "feetech": 1.0, "dynamixel": 1.0}
 
 
-def _told(model: Model, n: int) -> FloatArray:
+def told(model: Model, n: int) -> FloatArray:
     """The last `n` set points, in what the servos are told."""
     match model:
         case MaestroModel():
@@ -52,8 +52,7 @@ def test_set_points_arrive_in_order_and_right_to_half_a_step(name: str) -> None:
         driver.flush()
         driver.close()
         far.finish()
-    told = _told(model, len(positions))
-    assert np.abs(told - calibration.to_servos(positions)).max() <= STEPS[name] / 2 + 1e-9
+    assert np.abs(told(model, len(positions)) - calibration.to_servos(positions)).max() <= STEPS[name] / 2 + 1e-9
     numbers = [int(number) for number in re.findall(r"\d+", driver.statistics()[0])]
     assert numbers[0] == driver.executed() == 200
     assert numbers[2] <= numbers[3]
