@@ -29,6 +29,7 @@ from planner.placement.fit import fit_to_canvas
 from planner.placement.pieces import Piece
 from planner.placement.split import split_strokes
 from planner.portions import (
+    BULGE_SHARE,
     SAMPLE_SHARE,
     SMOOTH_SHARE,
     Kit,
@@ -50,7 +51,7 @@ from planner.workers import ALONE, Crew, Workers, crew_of
 Report = Callable[[str, int, int], None]
 """Told the stage, how much of it is done, and how much there is."""
 
-_FLATTEN_SHARE = _JOIN_SHARE = 0.5 * (1.0 - SMOOTH_SHARE - SAMPLE_SHARE)
+_FLATTEN_SHARE = _JOIN_SHARE = 0.5 * (1.0 - SMOOTH_SHARE - SAMPLE_SHARE - BULGE_SHARE)
 """Shares of the tolerance that are left for chords in the place of curves, and for gaps that are closed."""
 
 _SMALL_BYTES = 60_000
@@ -166,7 +167,7 @@ def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: 
     """Joint samples of all strokes that can be drawn, and what is to be said of them; those that cannot are left out if
     the user wants so."""
     settings = kit.settings
-    pieces = pieces_of(strokes, settings)
+    pieces = pieces_of(kit, strokes)
     results = _results(crew, kit, list(chain.from_iterable(pieces)), report)
     timed: list[TimedStroke] = []
     lost = 0

@@ -15,8 +15,9 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.arms.kinematics import kinematics_of
 from planner.arms.link_clearance import link_clearance
-from planner.arms.posture_field import posture_field
+from planner.arms.posture_field import posture_field, posture_sheets
 from planner.arrays import FloatArray
+from planner.inverse_kinematics.joint_path import JointPaths
 from planner.inverse_kinematics.stroke_postures import (
     Obstacle,
     collision_obstacles,
@@ -24,10 +25,11 @@ from planner.inverse_kinematics.stroke_postures import (
     joint_paths,
     postures_at,
 )
-from planner.placement.pen_path import smooth_paths
+from planner.placement.pen_path import PenPaths, smooth_paths
 from planner.placement.pieces import Piece, in_pieces
 from planner.settings import Method, PlanSettings
 from planner.timing.branch_change import keeps_branch, plan_branch_change
+from planner.timing.bulge_cap import bulge_cap
 from planner.timing.hops import Hop, HopRules, Touch, plan_hops
 from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
@@ -35,8 +37,9 @@ from planner.timing.speed_cap import rate_cap
 from planner.timing.stroke_motion import motions
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
-SMOOTH_SHARE, SAMPLE_SHARE = 0.5, 0.4
-"""Shares of the tolerance: rounded corners, and the straight lines between samples."""
+SMOOTH_SHARE, SAMPLE_SHARE, BULGE_SHARE = 0.5, 0.4, 0.04
+"""Shares of the tolerance: rounded corners, straight lines between samples, and what the tip strays from these because
+it is the joints that move straight."""
 
 _PORTION_WORK = 4000.0
 _LEAST_WORK = 10.0
@@ -113,10 +116,13 @@ class HopPortion:
     meet: Sequence[Touch | None]
 
 
-def pieces_of(strokes: Sequence[FloatArray], settings: PlanSettings) -> list[list[Piece]]:
-    """What may be timed apart, stroke by stroke. Methods that go from posture to posture need strokes whole."""
-    return list(in_pieces(strokes, SMOOTH_SHARE * settings.tolerance_mm,
-                          whole=settings.method in (Method.DLS, Method.NLP)))
+def pieces_of(kit: Kit, strokes: Sequence[FloatArray]) -> list[list[Piece]]:
+    """What may be timed apart, stroke by stroke. Methods that go from posture to posture need strokes whole, and so
+    does an arm that has to choose a sheet of postures for each."""
+    settings = kit.settings
+    whole = settings.method in (Method.DLS, Method.NLP) or (
+        settings.method is Method.PATH and len(posture_sheets(kit.arm, settings.weights)) > 1)
+    return list(in_pieces(strokes, SMOOTH_SHARE * settings.tolerance_mm, whole=whole))
 
 
 def stroke_portions(kit: Kit, pieces: Sequence[Piece]) -> Iterator[StrokePortion]:
@@ -188,8 +194,7 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
     for _ in range(_TIMING_HALVINGS):
         paths, splines = paths.halved(), splines.halved()
     derivatives = (splines.positions(FRACTIONS, 1), splines.positions(FRACTIONS, 2), splines.positions(FRACTIONS, 3))
-    cap = rate_cap(paths, FRACTIONS, settings.speed_mm_s, SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz)
-    problem = TimingProblem.of(paths.n_cells, derivatives, limits, cap)
+    problem = TimingProblem.of(paths.n_cells, derivatives, limits, pen_cap(arm, paths, splines, settings))
     timing = minimum_time(problem)
     motion = motions(splines, timing.rates, limits, settings.rate_hz)
     kinematics = kinematics_of(arm)
@@ -202,6 +207,14 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
         timed.append(collisions.get(index) or TimedStroke(
             joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell, settled))
     return timed
+
+
+def pen_cap(arm: Arm, paths: PenPaths, splines: JointPaths, settings: PlanSettings) -> FloatArray:
+    """(total cells, n_fractions) cap on dsigma/dt at FRACTIONS of every cell: the pen's own speed, and what keeps it
+    near its path between samples."""
+    chords = rate_cap(paths, FRACTIONS, settings.speed_mm_s, SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz)
+    bulges = bulge_cap(kinematics_of(arm), splines, BULGE_SHARE * settings.tolerance_mm, settings.rate_hz)
+    return np.minimum(chords, bulges[:, None])
 
 
 def _timed_taps(arm: Arm, tips_mm: FloatArray, settings: PlanSettings) -> list[TimedStroke | Obstacle]:

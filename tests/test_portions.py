@@ -35,9 +35,8 @@ def test_pieces_join_to_one_stroke_at_rest_where_they_meet(method: Method, monke
     monkeypatch.setattr("planner.placement.pieces._WORK", 100)
     x = np.linspace(-30.0, 30.0, 200)
     stroke = np.column_stack((130.0 + 4.0 * np.abs((x + 30.0) % 8.0 - 4.0), x))
-    settings = PlanSettings(method=method)
-    kit = Kit.of(load_once("drawing_arm"), settings)
-    (pieces,) = pieces_of([stroke], settings)
+    kit = Kit.of(load_once("drawing_arm"), PlanSettings(method=method))
+    (pieces,) = pieces_of(kit, [stroke])
     timed = [one for one in timed_strokes(StrokePortion(kit, [piece.points_mm for piece in pieces]))
              if isinstance(one, TimedStroke)]
     assert len(timed) == len(pieces) > 3
@@ -51,5 +50,6 @@ def test_pieces_join_to_one_stroke_at_rest_where_they_meet(method: Method, monke
 @pytest.mark.parametrize("method", [Method.DLS, Method.NLP])
 def test_methods_that_go_from_posture_to_posture_get_strokes_whole(method: Method) -> None:
     stroke = np.column_stack((np.arange(20000.0), np.arange(20000.0) % 2.0))
-    assert [len(pieces) for pieces in pieces_of([stroke, stroke[:1]], PlanSettings(method=method))] == [1, 1]
-    assert len(pieces_of([stroke], PlanSettings())[0]) > 1
+    sequential, by_place = (Kit.of(load_once("drawing_arm"), PlanSettings(method=one)) for one in (method, Method.PATH))
+    assert [len(pieces) for pieces in pieces_of(sequential, [stroke, stroke[:1]])] == [1, 1]
+    assert len(pieces_of(by_place, [stroke])[0]) > 1

@@ -25,7 +25,6 @@ from planner.ragged import starts_of
 from planner.settings import PlanSettings
 from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
-from planner.timing.speed_cap import rate_cap
 from planner.timing.stroke_motion import StrokeMotions, motions
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
@@ -127,9 +126,7 @@ def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> Ti
     for _ in range(portions._TIMING_HALVINGS):
         pen, joints = pen.halved(), joints.halved()
     limits = Limits.of(arm)
-    cap = rate_cap(pen, FRACTIONS, settings.speed_mm_s, portions.SAMPLE_SHARE * settings.tolerance_mm,
-                   settings.rate_hz)
-    return _timed(pen, joints, cap, limits)
+    return _timed(pen, joints, portions.pen_cap(arm, pen, joints, settings), limits)
 
 
 def _timed(pen: PenPaths, joints: JointPaths, cap: FloatArray, limits: Limits) -> TimedPaths:
@@ -139,8 +136,8 @@ def _timed(pen: PenPaths, joints: JointPaths, cap: FloatArray, limits: Limits) -
 
 def timed_in_portions(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedPaths]:
     """The same in the portions and pieces that the planner makes of them."""
-    pieces = chain.from_iterable(portions.pieces_of(strokes, settings))
-    cut = portions.stroke_portions(portions.Kit.of(arm, settings), list(pieces))
+    kit = portions.Kit.of(arm, settings)
+    cut = portions.stroke_portions(kit, list(chain.from_iterable(portions.pieces_of(kit, strokes))))
     return [timed(arm, portion.strokes, settings) for portion in cut]
 
 

@@ -88,8 +88,9 @@ class PostureField:
     def reaches(self, points_mm: FloatArray) -> BoolArray:
         """(n,) whether points of the paper (n, 2) lie within the field's radii and the joint limits."""
         radius = np.hypot(*points_mm.T)
-        _, good = self.postures_at(np.column_stack((points_mm, np.zeros(len(points_mm)))))
-        reached: BoolArray = (radius >= self.radii_mm[0]) & (radius <= self.radii_mm[-1]) & good
+        reached: BoolArray = (radius >= self.radii_mm[0]) & (radius <= self.radii_mm[-1])
+        near = points_mm[reached]
+        reached[reached] = self.postures_at(np.column_stack((near, np.zeros(len(near)))))[1]
         return reached
 
     def postures_at(self, tip_mm: FloatArray) -> tuple[FloatArray, BoolArray]:

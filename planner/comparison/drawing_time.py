@@ -25,8 +25,9 @@ class StrokeTimes:
 
 def stroke_times(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> StrokeTimes:
     """Strokes (n, 2) in arm mm by the method of the settings, on the same pen paths whatever the method."""
-    pieces = pieces_of(strokes, settings)
-    portions = stroke_portions(Kit.of(arm, settings), list(chain.from_iterable(pieces)))
+    kit = Kit.of(arm, settings)
+    pieces = pieces_of(kit, strokes)
+    portions = stroke_portions(kit, list(chain.from_iterable(pieces)))
     results = chain.from_iterable(map(timed_strokes, portions))
     seconds = np.full(len(strokes), np.nan)
     obstacles: list[Obstacle] = []

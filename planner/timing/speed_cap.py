@@ -10,7 +10,6 @@ from planner.ragged import starts_of
 
 _STEP = 0.85
 """Ratio of the speeds that are tried, one after the other."""
-_SLOWEST = 0.01
 _GAP_MM = 1e4
 _PARTS = 2
 """Parts of a cell at whose ends chords are tried: a hairpin may turn in the middle of one."""
@@ -49,8 +48,9 @@ def _chord_speeds(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz
     end = np.repeat(along[last + 1 + np.arange(len(last))], n_parts + 1)
     allowed = np.full(len(points), speed_mm_s)
     open_points = np.arange(len(points))  # where the chord of the speed at hand still cuts too much
+    slowest = min(2 * sagitta_mm * rate_hz, speed_mm_s)  # half of a chord so short cannot stray further
     speed = speed_mm_s
-    while len(open_points) and speed > _SLOWEST * speed_mm_s:
+    while len(open_points) and speed > slowest:
         half = 0.5 * speed / rate_hz
         at = along[open_points]
         before = _at(np.maximum(at - half, begin[open_points]), along, points)
@@ -59,7 +59,7 @@ def _chord_speeds(paths: PenPaths, speed_mm_s: float, sagitta_mm: float, rate_hz
         if speed < speed_mm_s:
             _restrict(allowed, speed, along, at[~cut], half)
         open_points = open_points[cut]
-        speed *= _STEP
+        speed = max(_STEP * speed, slowest)
     _restrict(allowed, speed, along, along[open_points], 0.5 * speed / rate_hz)
     left, right = (side.reshape(-1, _PARTS) for side in (allowed[is_left], allowed[1:][is_left[:-1]]))
     return np.column_stack((left, right[:, -1]))
