@@ -72,6 +72,7 @@ def plot(arguments: list[str]) -> int:
 
     from planner.arms.arm_file import DEFAULT_ARM, load_arm
     from planner.plots.look import Look, Size, Theme
+    from planner.plots.samples import require_joints
     from planner.trajectory import read_trajectory
 
     look = Look.of(Theme(options.theme), Size(options.size), options.dpi or (_FILM_DPI if kind == "film" else None))
@@ -81,6 +82,7 @@ def plot(arguments: list[str]) -> int:
     else:
         trajectory = read_trajectory(options.trajectory)
         arm = load_arm(options.arm or trajectory.arm)
+        require_joints(trajectory, arm)
         if kind == "film":
             _film(trajectory, arm, options, look)
             return 0
@@ -159,9 +161,6 @@ def _check_format(target: Path, kind: str) -> None:
 
 
 def _figure(trajectory: Trajectory, arm: Arm, kind: str, options: argparse.Namespace, look: Look) -> Figure:
-    from planner.plots.samples import require_joints
-
-    require_joints(trajectory, arm)
     part = {"from_s": options.from_s, "to_s": options.to_s}
     if kind == "profiles":
         from planner.plots.profiles import plot_profiles
@@ -237,9 +236,7 @@ def _workspace(arm: Arm, look: Look) -> Figure:
 def _film(trajectory: Trajectory, arm: Arm, options: argparse.Namespace, look: Look) -> None:
     from planner.plots.film_file import save_film
     from planner.plots.motion import motion_of
-    from planner.plots.samples import require_joints
 
-    require_joints(trajectory, arm)
     canvas, reach_mm = _paper_of(arm)
     motion = motion_of(trajectory, arm, _tip_mm(trajectory, arm), speed_factor=options.speed_factor, fps=options.fps,
                        from_s=options.from_s, to_s=options.to_s)

@@ -147,7 +147,7 @@ def _notes(comparison: Comparison) -> Iterator[str]:
             yield f"{name}: {result.refusal}"
         for failure in result.failures:
             place = ", ".join(f"{value:.1f}" for value in failure.first_mm)
-            yield f"{name}: {failure.count} {failure.what} failed, the first at ({place}) mm: {failure.reason}"
+            yield f"{name}: {failure.what} failed: {failure.count}, the first at ({place}) mm: {failure.reason}"
 
 
 def _tolerances() -> str:

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from itertools import chain
 from pathlib import Path
 from typing import IO, cast
@@ -109,14 +110,12 @@ def _write_mp4(frames: Iterator[Frame], fps: float, file: IO[bytes], target: Pat
         with (Path(folder) / "log").open("w+b") as log, subprocess.Popen(
                 command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=log) as encoder:
             try:
-                for frame in chain([first], frames):
-                    cast("IO[bytes]", encoder.stdin).write(frame.tobytes())
-            except BrokenPipeError:
-                pass  # it says why when it ends
+                with suppress(BrokenPipeError), cast("IO[bytes]", encoder.stdin) as pipe:  # it says why when it ends
+                    for frame in chain([first], frames):
+                        pipe.write(frame.tobytes())
             except BaseException:
                 encoder.kill()
                 raise
-            cast("IO[bytes]", encoder.stdin).close()
             if encoder.wait():
                 log.seek(0)
                 said = log.read().decode(errors="replace").strip().splitlines()
