@@ -116,6 +116,10 @@ def plugged_in() -> list[PluggedIn]:
 def _why_not(name: str, error: Exception) -> str:
     """What keeps a line from being opened, and what to do about it."""
     number = error.errno if isinstance(error, OSError) else None
+    if number is None and error.__context__ is not None and error.__context__.args:  # a termios.error has no errno
+        number = error.__context__.args[0]
+    if number in (errno.ENOTTY, errno.EISDIR):
+        return "it is no serial port; plan ports lists those there are"
     if number in (errno.ENOENT, errno.ENODEV, errno.ENXIO):
         devices = ", ".join(port.device for port in plugged_in())
         return "there is no such port; " + (f"plugged in: {devices}" if devices else "nothing is plugged in")

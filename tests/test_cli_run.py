@@ -97,6 +97,8 @@ def test_a_dry_run_says_what_would_be_sent_and_sends_nothing(
     (["--port", "/dev/ttyUSB0"], "a simulated arm is at no port"),
     (["--driver", "ssc32", "--port", "loop://", "--fast"], "--fast goes with --driver sim or mujoco"),
     (["--driver", "ssc32", "--port", "loop://", "--picture", "d.png"], "--picture goes with --driver sim or mujoco"),
+    (["--driver", "ssc32", "--port", "loop://", "--baud", "0"], "'0' is no speed of a line"),
+    (["--driver", "ssc32", "--port", "loop://", "--baud", "fast"], "'fast' is no speed of a line"),
     (["--resume", "--from-stroke", "2"], "leave out --from-stroke"),
     (["--resume"], "there is nothing to resume: no journal"),
     (["--from-stroke", "10"], "there is no stroke 10; the drawing has 0 to 9"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,8 +14,6 @@ from planner.cli.terminal import Show, print_lines, print_note, progress
 from planner.errors import HardwareError, UsageError
 
 if TYPE_CHECKING:
-    import argparse
-
     from hardware.calibration import Calibration
     from hardware.clock import Clock
     from hardware.driver import Driver
@@ -125,7 +124,8 @@ def _parser() -> Parser:
     parser.add_argument("--port", metavar="PORT|URL",
                         help="where the controller is: a serial port as plan ports lists them, or a URL such as "
                              "socket://HOST:PORT")
-    parser.add_argument("--baud", type=int, metavar="RATE", help="of the serial line (default: the controller's usual)")
+    parser.add_argument("--baud", type=_baud, metavar="RATE",
+                        help="of the serial line (default: the controller's usual)")
     parser.add_argument("--arm", metavar="NAME|FILE",
                         help="play it on this arm, whose joints have to be the same (default: the one in the file)")
     parser.add_argument("--speed-factor", type=number(minimum=0.01, maximum=1.0), default=1.0, metavar="F",
@@ -145,6 +145,12 @@ def _parser() -> Parser:
     parser.add_argument("--film", type=Path, metavar="FILE", help="mujoco: a .gif or .mp4 of the arm at work")
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary")
     return parser
+
+
+def _baud(text: str) -> int:
+    if not text.isdecimal() or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"'{text}' is no speed of a line, such as 115200")
+    return int(text)
 
 
 def _refuse_contradictions(options: argparse.Namespace) -> None:
@@ -191,8 +197,6 @@ def _told_to_servos(calibration: Calibration | None, programme: Programme, arm: 
         return calibration.to_servos(programme.positions)
     except HardwareError as error:
         raise UsageError(f"on the way from or to the park pose of arm '{arm.name}': {error}") from error
-
-
 
 
 def _verdict(options: argparse.Namespace, arm: Arm, programme: Programme, calibration: Calibration | None,

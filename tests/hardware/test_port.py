@@ -126,6 +126,12 @@ def test_a_device_without_permission_is_told_with_the_group_that_has_it(terminal
         os.seteuid(user)
 
 
+@pytest.mark.parametrize("name", ["/dev/null", "/", __file__])
+def test_what_is_no_serial_port_is_told(name: str) -> None:
+    with pytest.raises(HardwareError, match=f"^{name}: it is no serial port; plan ports lists those there are$"):
+        Line(name).open(9600)
+
+
 @pytest.mark.parametrize("name", ["socket://nowhere", "socket://127.0.0.1:99999", "sockets://127.0.0.1:1", "://", ""])
 def test_a_name_that_means_nothing_is_told_in_one_line(name: str) -> None:
     with pytest.raises(HardwareError) as caught:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -20,8 +21,9 @@ from tests.hardware.controllers.maestro import MaestroModel
 from tests.hardware.controllers.ssc32 import Ssc32Model
 
 MIDDLE = {1: 2048, 2: 2048, 3: 2048, 4: 2048, 5: 2048}
-MAKERS = {"maestro": MaestroModel, "maestro-crc": lambda: MaestroModel(crc=True), "ssc32": Ssc32Model,
-          "feetech": lambda: FeetechModel(MIDDLE), "dynamixel": lambda: DynamixelModel(MIDDLE)}
+MAKERS: dict[str, Callable[[], Model]] = {
+    "maestro": MaestroModel, "maestro-crc": lambda: MaestroModel(crc=True), "ssc32": Ssc32Model,
+    "feetech": lambda: FeetechModel(MIDDLE), "dynamixel": lambda: DynamixelModel(MIDDLE)}
 STEPS = {"maestro": 0.25, "maestro-crc": 0.25, "ssc32": 1.0, "feetech": 1.0, "dynamixel": 1.0}
 
 
