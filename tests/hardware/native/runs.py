@@ -90,13 +90,15 @@ def progress(emulator: Emulator, plan: FloatArray, since_s: float) -> tuple[Floa
 class Console:
     """Frames by hand, for what no driver would send."""
 
+    sequence = 0
+    """Counted over all consoles: a status tells the last order's, which may have been another console's."""
+
     def __init__(self, line: LockStep) -> None:
         self.line, self.reader = line, native.Reader()
-        self.sequence = 0
 
     def give(self, kind: native.Order, message: bytes | None = None) -> native.Status:
         """An order, and the status that answers it."""
-        self.sequence = (self.sequence + 1) % 256
+        Console.sequence = self.next()
         self.line.write(native.order(kind, self.sequence) if message is None else message)
         for _ in range(100):
             for one in self.reader.feed(self.line.read(4096, 0.002)):

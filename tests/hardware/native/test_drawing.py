@@ -10,6 +10,7 @@ import pytest
 
 from hardware.calibration import pulse_calibration
 from hardware.drawn import drawn_lines
+from hardware.gentle_move import come_from
 from hardware.native.driver import NativeDriver
 from hardware.player import play
 from hardware.playing import End, Request
@@ -62,8 +63,10 @@ def test_what_the_pins_draw_is_the_drawing_paused_or_not(
         lock_step: Callable[[Faults], LockStep], drawing: Path, trajectory: Trajectory, rests: int) -> None:
     controller = lock_step(Faults(flip=0.001, drop=0.001))
     calibration = pulse_calibration(ARM)
-    driver = NativeDriver(lambda: controller, calibration.to_servos, calibration.addresses, calibration.ranges,
-                          controller)
+    driver = NativeDriver(
+        lambda: controller, calibration.to_servos,
+        lambda held_us, pose, rate_hz: come_from(ARM, calibration.to_joints(held_us), pose, rate_hz),
+        calibration.addresses, calibration.ranges, controller)
     programme = make_programme(ARM, set_points(trajectory, ARM, drawing), trajectory.stroke, trajectory.rate_hz)
     requests = iter([*[Request.GO] * 160, *[Request.PAUSE] * rests])
 
