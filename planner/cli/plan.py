@@ -93,7 +93,7 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
 
 def _parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
-    parser.usage = "plan DRAWING.svg [-o traj.csv] [options]\n       plan batch|run|check|plot|compare|arm ..."
+    parser.usage = "plan DRAWING.svg [-o traj.csv] [options]\n       plan batch|run|ports|check|plot|compare|arm ..."
     parser.add_argument("drawing", type=Path, metavar="DRAWING.svg")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE",
                         help="the trajectory (default: the drawing's name with .csv, in the current folder)")
