@@ -32,19 +32,21 @@ _LOWERED_SLOWER = 3
 def play(programme: Programme, arm: Arm, driver: Driver, clock: Clock, *,
          request: Callable[[], Request] = lambda: Request.GO,
          report: Callable[[Progress], None] = lambda progress: None,
-         finished: Callable[[int], None] = lambda stroke: None) -> Played:
+         connected: Callable[[], None] = lambda: None, finished: Callable[[int], None] = lambda stroke: None) -> Played:
     """Play `programme`: set point k at k / rate after the start, later only by pauses and stalls.
 
     `request()` is asked before every set point. On a pause the arm brakes along the path and the pen goes straight up;
     then it comes down where it was and goes on from there. On a stop it brakes, lifts and goes to the park pose. On an
     e-stop it holds where it is. If something fails that is not the arm, such as `report`, it is stopped before the
     error goes on its way. `report(progress)` is called after every set point and has to be quick;
-    `finished(stroke)` once a stroke is known to be drawn. The driver is closed in any case.
+    `connected()` once the arm is ready to play, `finished(stroke)` once a stroke is known to be drawn. The driver is
+    closed in any case.
     Errors: HardwareError.
     """
     playing = _Playing(programme, arm, driver, clock, request, report, finished)
     try:
         driver.connect(programme.park)
+        connected()
         playing.begin()
         try:
             end = playing.run()

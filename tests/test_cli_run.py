@@ -275,6 +275,15 @@ def test_the_terminal_is_as_it_was_whatever_ends_it(ring_csv: Path, key: bytes) 
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")
+def test_a_wrong_port_does_not_cost_the_earlier_runs_journal(
+        taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    journal = taps_csv.with_name(taps_csv.name + ".journal")
+    journal.write_text("what an earlier run has drawn")
+    assert main(["run", str(taps_csv), "--driver", "ssc32", "--port", str(taps_csv.parent / "nothing")]) == 4
+    assert journal.read_text() == "what an earlier run has drawn"
+    assert "--resume" not in capsys.readouterr().err
+
+
 def test_a_rehearsal_leaves_the_arms_own_journal_alone(taps_csv: Path) -> None:
     journal = taps_csv.with_name("traj.csv.journal")
     journal.write_text("the arm's own")

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from hardware.calibration import Calibration
     from hardware.clock import Clock
     from hardware.driver import Driver
+    from hardware.journal import Journal
     from hardware.mujoco_arm import MujocoArm
     from hardware.playing import Progress
     from hardware.programme import Programme
@@ -88,7 +89,16 @@ def run(arguments: list[str]) -> int:
     clock = InstantClock() if options.fast else WallClock()
     simulated = _simulated(options, arm, clock)
     driver = simulated or make_driver(options.driver, arm, Line(options.port, options.baud), clock)
-    journal = open_journal(options, beginning)
+    journals: list[Journal] = []  # one, once the arm is there to draw: a wrong port must not cost an earlier run's
+
+    def connected() -> None:
+        journal = open_journal(options, beginning)
+        journals.extend([journal] if journal else [])
+
+    def finished(stroke: int) -> None:
+        for journal in journals:
+            journal.finished(stroke)
+
     ended, complete = "broken off", False
     try:
         with controls() as wishes, progress(quiet=options.quiet, single=True) as show:
@@ -96,13 +106,13 @@ def run(arguments: list[str]) -> int:
                 _announce(options, programme, arm, KEYS if wishes.has_keys else "")
             played = play(programme, arm, driver, clock, request=wishes.request,
                           report=_reporting(show, driver, programme.rate_hz, last_stroke),
-                          finished=journal.finished if journal else lambda stroke: None)
+                          connected=connected, finished=finished)
         ended, complete = played.end.value, played.end is End.PLAYED
     except HardwareError as error:
         ended = str(error)
         raise
     finally:
-        if journal:
+        for journal in journals:
             journal.close(ended, complete=complete)
             if not complete:
                 print_note(f"--resume goes on from stroke {journal.next_stroke} of 0..{last_stroke}")
