@@ -15,7 +15,7 @@ import numpy as np
 
 from hardware.clock import Clock
 from hardware.drawn import is_drawing
-from hardware.simulated_arm import Recording
+from hardware.simulated_arm import Recorder, Recording
 from planner.arms.arm import Arm, JointKind
 from planner.arrays import FloatArray
 from planner.errors import HardwareError, UsageError
@@ -50,15 +50,11 @@ class MujocoArm:
         self._film = _Film(self._mujoco, self._model, film) if film else None
         self._connected = False
         self._at_s = 0.0
-        self._times_s: list[float] = []
-        self._set_points: list[FloatArray] = []
-        self._positions: list[FloatArray] = []
+        self._recorder = Recorder(arm.n_joints)
 
     @property
     def recording(self) -> Recording:
-        shape = (len(self._times_s), self._arm.n_joints)
-        return Recording(np.array(self._times_s), np.reshape(self._set_points, shape),
-                         np.reshape(self._positions, shape))
+        return self._recorder.recording
 
     @property
     def tip_mm(self) -> FloatArray:
@@ -80,7 +76,7 @@ class MujocoArm:
         self._record()
 
     def executed(self) -> int:
-        return len(self._times_s)
+        return len(self._recorder)
 
     def flush(self) -> None:
         self._clock.sleep_until(self._clock.now_s() + _SETTLING_S)
@@ -112,9 +108,7 @@ class MujocoArm:
                 self._film.watch(self._data, drawing=is_drawing(self._arm, float(self.tip_mm[2])))
 
     def _record(self) -> None:
-        self._times_s.append(self._at_s)
-        self._set_points.append(self._data.ctrl / self._scale)
-        self._positions.append(self._data.qpos / self._scale)
+        self._recorder.add(self._at_s, self._data.ctrl / self._scale, self._data.qpos / self._scale)
 
 
 def model_of(arm: Arm) -> str:

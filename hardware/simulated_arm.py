@@ -43,6 +43,31 @@ class Recording:
     positions: FloatArray
 
 
+class Recorder:
+    """A recording being made."""
+
+    def __init__(self, n_joints: int) -> None:
+        self._n_joints = n_joints
+        self._times_s: list[float] = []
+        self._set_points: list[FloatArray] = []
+        self._positions: list[FloatArray] = []
+
+    def __len__(self) -> int:
+        return len(self._times_s)
+
+    def add(self, time_s: float, set_point: FloatArray, positions: FloatArray) -> None:
+        """A row. The arrays are kept as they are."""
+        self._times_s.append(time_s)
+        self._set_points.append(set_point)
+        self._positions.append(positions)
+
+    @property
+    def recording(self) -> Recording:
+        shape = (len(self), self._n_joints)
+        return Recording(np.array(self._times_s), np.reshape(self._set_points, shape),
+                         np.reshape(self._positions, shape))
+
+
 class SimulatedArm:
     """A driver that moves nothing and remembers everything."""
 
@@ -54,15 +79,11 @@ class SimulatedArm:
         self._servos = _Ideal(arm) if servos is Servos.IDEAL else _Real(arm)
         self._target: FloatArray | None = None
         self._at_s = 0.0
-        self._times_s: list[float] = []
-        self._set_points: list[FloatArray] = []
-        self._positions: list[FloatArray] = []
+        self._recorder = Recorder(arm.n_joints)
 
     @property
     def recording(self) -> Recording:
-        shape = (len(self._times_s), self._arm.n_joints)
-        return Recording(np.array(self._times_s), np.reshape(self._set_points, shape),
-                         np.reshape(self._positions, shape))
+        return self._recorder.recording
 
     @property
     def connected(self) -> bool:
@@ -82,7 +103,7 @@ class SimulatedArm:
         self._record()
 
     def executed(self) -> int:
-        return len(self._times_s)
+        return len(self._recorder)
 
     def flush(self) -> None:
         target = self._connected_target()
@@ -113,9 +134,7 @@ class SimulatedArm:
         self._at_s = now_s
 
     def _record(self) -> None:
-        self._times_s.append(self._at_s)
-        self._set_points.append(self._connected_target())
-        self._positions.append(self._servos.positions.copy())
+        self._recorder.add(self._at_s, self._connected_target(), self._servos.positions.copy())
 
     def _refuse_beyond_stops(self, positions: FloatArray) -> None:
         beyond = (positions < self._arm.minimum - _STOP_ALLOWANCE) | (positions > self._arm.maximum + _STOP_ALLOWANCE)
