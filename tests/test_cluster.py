@@ -43,7 +43,7 @@ def scheduler(tmp_path: Path) -> Iterator[Path]:
     with running("distributed.cli.dask_scheduler", "--host", "tcp://127.0.0.1", "--port", "0", "--no-dashboard",
                  "--no-show", "--scheduler-file", str(file)) as process:
         deadline = time.monotonic() + START_S
-        while not file.exists():
+        while not (file.exists() and file.read_text(encoding="utf-8").rstrip().endswith("}")):  # written in full
             assert process.poll() is None and time.monotonic() < deadline, "the scheduler does not start"
             time.sleep(0.05)
         yield file
