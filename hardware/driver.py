@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
 
 from planner.arrays import FloatArray
 
@@ -44,3 +45,26 @@ class Driver(Protocol):
 
     def statistics(self) -> list[str]:
         """Lines about the link for people: frames, retransmissions, under-runs, lateness."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """How a controller counts what it does in a run, so that another host can read its count: the run's number, the
+    count before the first set point, and how many set points go into one count."""
+
+    run: int
+    first: int
+    each: int
+
+
+@runtime_checkable
+class Remembering(Driver, Protocol):
+    """A driver whose controller goes on counting when its host is lost, and remembers the count."""
+
+    def tally(self, period_s: float) -> Tally:
+        """How the set points of this run, `period_s` apart, are counted; once connected."""
+
+    def recall(self, earlier: Tally | None) -> int | None:
+        """How many set points of the run `earlier` were reached, None where the controller remembers another run or
+        none, or nothing is asked but whether it is there. Before `connect`, which makes it forget; returns once the arm
+        stands."""

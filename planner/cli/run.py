@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from hardware.calibration import Calibration
     from hardware.clock import Clock
     from hardware.driver import Driver
-    from hardware.journal import Journal
     from hardware.mujoco_arm import MujocoArm
     from hardware.playing import Progress
     from hardware.programme import Programme
@@ -53,15 +53,16 @@ def run(arguments: list[str]) -> int:
     _refuse_contradictions(options)
 
     from hardware.clock import InstantClock, WallClock
+    from hardware.driver import Remembering
     from hardware.drivers import calibration_of, make_driver
     from hardware.player import play
     from hardware.playing import End
     from hardware.port import Line
     from hardware.preflight import servo_values, set_points
-    from hardware.programme import make_programme
+    from hardware.programme import make_programme, parking
     from planner.arms.arm_file import load_arm
     from planner.cli.controls import KEYS, controls
-    from planner.cli.resuming import open_journal, where_to_begin
+    from planner.cli.resuming import Keeping, where_to_begin
     from planner.cli.run_pictures import check_pictures, save_pictures
     from planner.trajectory import read_trajectory
 
@@ -75,30 +76,26 @@ def run(arguments: list[str]) -> int:
     if calibration is not None:
         servo_values(calibration, positions, trajectory, options.trajectory)
     last_stroke = int(trajectory.stroke.max())
-    beginning = where_to_begin(options, arm)
-    if options.resume and (beginning.complete or beginning.next_stroke > last_stroke):
-        print_lines([f"{options.trajectory} is drawn to its end; without --resume it is drawn again"])
-        return 0
-    programme = make_programme(arm, positions, trajectory.stroke, trajectory.rate_hz * options.speed_factor,
-                               from_stroke=beginning.next_stroke, park=arm.park)
-    told = _told_to_servos(calibration, programme, arm)
-    if options.dry_run:
-        print_lines(_verdict(options, arm, programme, calibration, told))
-        return 0
-
     clock = InstantClock() if options.fast else WallClock()
     simulated = _simulated(options, arm, clock)
-    driver = simulated or make_driver(options.driver, arm, Line(options.port, options.baud), clock)
-    journals: list[Journal] = []  # one, once the arm is there to draw: a wrong port must not cost an earlier run's
-
-    def connected() -> None:
-        journal = open_journal(options, beginning)
-        journals.extend([journal] if journal else [])
-
-    def finished(stroke: int) -> None:
-        for journal in journals:
-            journal.finished(stroke)
-
+    driver = simulated or make_driver(options.driver, arm, Line(options.port or "", options.baud), clock)
+    with ExitStack() as failing:
+        failing.callback(driver.close)
+        beginning = where_to_begin(options, arm, trajectory.stroke, None if options.dry_run else driver)
+        nothing_left = options.resume and (beginning.complete or beginning.next_stroke > last_stroke)
+        if nothing_left and (beginning.complete or not isinstance(driver, Remembering)):
+            print_lines([f"{options.trajectory} is drawn to its end; without --resume it is drawn again"])
+            return 0
+        rate_hz = trajectory.rate_hz * options.speed_factor
+        programme = (parking(arm, positions, rate_hz, arm.park) if nothing_left else
+                     make_programme(arm, positions, trajectory.stroke, rate_hz, from_stroke=beginning.next_stroke,
+                                    from_sample=beginning.sample, park=arm.park))
+        told = _told_to_servos(calibration, programme, arm)
+        if options.dry_run:
+            print_lines(_verdict(options, arm, programme, calibration, told))
+            return 0
+        keeping = Keeping(options, beginning, driver, programme.rate_hz, clock)
+        failing.pop_all()
     ended, complete = "broken off", False
     try:
         with controls() as wishes, progress(quiet=options.quiet, single=True) as show:
@@ -106,16 +103,14 @@ def run(arguments: list[str]) -> int:
                 _announce(options, programme, arm, KEYS if wishes.has_keys else "")
             played = play(programme, arm, driver, clock, request=wishes.request,
                           report=_reporting(show, driver, programme.rate_hz, last_stroke),
-                          connected=connected, finished=finished)
+                          connected=keeping.connected, finished=keeping.finished,
+                          onward=keeping.onward, reached=keeping.reached)
         ended, complete = played.end.value, played.end is End.PLAYED
     except HardwareError as error:
         ended = str(error)
         raise
     finally:
-        for journal in journals:
-            journal.close(ended, complete=complete)
-            if not complete:
-                print_note(f"--resume goes on from stroke {journal.next_stroke} of 0..{last_stroke}")
+        keeping.close(ended, last_stroke, complete=complete)
     lines = played.lines()
     if simulated and options.picture:
         lines += save_pictures(options.picture, trajectory, arm, positions, simulated.recording.positions,
@@ -142,7 +137,8 @@ def _parser() -> Parser:
                         help="play slower by this factor, 0.01 to 1 (default: 1)")
     parser.add_argument("--from-stroke", type=int, metavar="K", help="leave out the strokes before K, counted from 0")
     parser.add_argument("--resume", action="store_true",
-                        help="go on after the last stroke that an earlier run finished, from its journal")
+                        help="go on after the last stroke that an earlier run finished, from its journal; native: "
+                             "where its controller stopped")
     parser.add_argument("--dry-run", action="store_true",
                         help="examine everything and say what would be sent, but send nothing")
     parser.add_argument("--fast", action="store_true", help="sim, mujoco: do not wait for the time of each sample")

@@ -1,20 +1,28 @@
 from __future__ import annotations
 
+import errno
+import json
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import IO, Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hardware.journal import Entry, Journal, digest, journal_path, read_journal
+from hardware.clock import InstantClock
+from hardware.course import next_to_draw
+from hardware.driver import Tally
+from hardware.journal import NOTED_EVERY_S, Entry, Journal, digest, journal_path, read_journal
 from planner.errors import OutputError, TrajectoryFileError
 
 BEGINNING = Entry("0f" * 32, "drawing_arm", "native", 3, "")
 
 
 def _written(path: Path, strokes: list[int], ended: str | None = None) -> None:
-    journal = Journal(path, BEGINNING)
+    journal = Journal(path, BEGINNING, InstantClock())
     for stroke in strokes:
         journal.finished(stroke)
     journal.close(ended or "", complete=ended is None)
@@ -23,7 +31,7 @@ def _written(path: Path, strokes: list[int], ended: str | None = None) -> None:
 def test_what_is_written_is_read_again(tmp_path: Path) -> None:
     path = tmp_path / "traj.csv.journal"
     assert read_journal(path) is None
-    journal = Journal(path, BEGINNING)
+    journal = Journal(path, BEGINNING, InstantClock())
     assert read_journal(path) == BEGINNING  # before anything moves
     journal.finished(3)
     journal.finished(4)
@@ -47,11 +55,12 @@ def test_cut_anywhere_it_remembers_what_was_on_disk(
     _written(path, [3, 4, 5], "stopped")
     whole = path.read_bytes()
     lines = whole.splitlines(keepends=True)
-    cut = data.draw(st.integers(len(lines[0]), len(whole)))
+    begun = len(lines[0] + lines[1])
+    cut = data.draw(st.integers(begun, len(whole)))
     path.write_bytes(whole[:cut] + data.draw(st.sampled_from([b"", b"\0\0\0\0", b"\n"])))
     entry = read_journal(path)
     assert entry is not None
-    sure = sum(len(line) <= cut - len(lines[0]) - sum(map(len, lines[1:k])) for k, line in enumerate(lines[1:4], 1))
+    sure = sum(len(line) <= cut - begun - sum(map(len, lines[2:k])) for k, line in enumerate(lines[2:5], 2))
     assert entry.next_stroke in (3 + sure, min(4 + sure, 6))
     assert entry.ended in ("", "stopped")
 
@@ -62,6 +71,104 @@ def test_what_is_no_journal_is_refused(tmp_path: Path, content: bytes) -> None:
     path.write_bytes(content)
     with pytest.raises(TrajectoryFileError, match="is not a journal"):
         read_journal(path)
+
+
+def test_a_journal_of_version_1_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "traj.csv.journal"
+    path.write_text('{"journal": 1, "sha256": "0f", "arm": "scara", "driver": "native", "next_stroke": 0}\n'
+                    '{"next_stroke": 1}\n{"next_stroke": 2}\n{"ended": "the line is dead"}\n')
+    assert read_journal(path) == Entry("0f", "scara", "native", 2, "the line is dead")
+
+
+def _read(path: Path) -> Entry:
+    entry = read_journal(path)
+    assert entry is not None
+    return entry
+
+
+def test_where_the_arm_has_come_to_is_noted_now_and_then_and_at_the_end_in_place(tmp_path: Path) -> None:
+    clock, path = InstantClock(), tmp_path / "traj.csv.journal"
+    journal = Journal(path, replace(BEGINNING, sample=30), clock)
+    assert _read(path).come_to(0) == 30
+    journal.counted(Tally(77, 5, 2))
+    journal.onward(1, np.array([30.0, 30.0, 30.2, 31.0, 32.0, 33.0, 34.0]))
+    journal.onward(5, np.array([31.5, 31.8, 31.8]))  # it brakes
+    journal.reached(0, 2)
+    length = 0
+    for executed in range(1, 7):
+        clock.sleep_until(clock.now_s() + 0.6 * NOTED_EVERY_S)
+        journal.reached(executed, executed + 1)
+        journal._writer.submit(lambda: None).result()  # what was told is written
+        assert executed - _read(path).reached <= 1
+        length = length or path.stat().st_size
+        assert path.stat().st_size == length
+    journal.close("the line is dead")
+    entry = _read(path)
+    assert (entry.tally, entry.reached, entry.sent, entry.settled) == (Tally(77, 5, 2), 6, 7, False)
+    assert [entry.come_to(reached) for reached in range(9)] == [30, 30, 30, 30.2, 31, 31.5, 31.8, 31.8, 31.8]
+    assert entry.at == 31.8
+
+
+class _Full:
+    """A disk with room for so many bytes more: what there is can be written over."""
+
+    def __init__(self, file: IO[bytes], room: int) -> None:
+        self._file, self._most = file, file.seek(0, 2) + room
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._file, name)
+
+    def write(self, line: bytes) -> int:
+        fits = min(len(line), self._most - self._file.tell())
+        if fits <= 0:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return self._file.write(line[:fits])
+
+
+@settings(max_examples=50, deadline=None)
+@given(room=st.integers(0, 450))
+def test_on_a_full_disk_the_journal_never_tells_of_more_than_there_was(
+        tmp_path_factory: pytest.TempPathFactory, room: int) -> None:
+    """A pause that it has no room for would have it take resting for drawing."""
+    path = tmp_path_factory.mktemp("journal") / "traj.csv.journal"
+    journal = Journal(path, replace(BEGINNING, sample=30), InstantClock())
+    journal._file = _Full(journal._file, room)  # type: ignore[assignment]
+    journal.counted(Tally(77, 5, 1))
+    journal.onward(1, 30.0 + np.arange(1000))
+    journal.onward(101, np.full(1000, 130.0))
+    journal.onward(801, np.concatenate((np.full(10, 130.0), 130.0 + np.arange(1000))))
+    journal.finished(3)
+    truth = {50: 79.0, 500: 130.0, 809: 130.0, 911: 230.0}
+    journal.reached(911, 920)
+    if room < 450:
+        with suppress(OutputError):
+            journal.close("stopped")
+    else:
+        journal.close("stopped")
+    entry = _read(path)
+    for reached, sample in truth.items():
+        told = entry.come_to(reached)
+        assert told is not None
+        assert 30 <= told <= sample
+        assert room < 400 or told == sample
+    assert entry.reached in (0, 911)
+    assert entry.next_stroke in (3, 4)
+
+
+@given(st.recursive(st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=5),
+                    lambda one: st.lists(one, max_size=4) | st.dictionaries(st.text(max_size=5), one, max_size=4)),
+       st.sampled_from(["next_stroke", "sample", "tally", "course", "reached", "sent", "course_until", "at", "ended",
+                        "arm", "journal"]))
+def test_whatever_stands_in_a_line_it_is_read_or_refused(
+        tmp_path_factory: pytest.TempPathFactory, value: object, key: str) -> None:
+    path = tmp_path_factory.getbasetemp() / "any.journal"
+    Journal(path, BEGINNING, InstantClock()).close("stopped")
+    with path.open("a") as file:
+        file.write(json.dumps({"course": [[1, 0.0], [5, 4.0]]}) + "\n" + json.dumps({key: value}) + "\n")
+    with suppress(TrajectoryFileError):
+        entry = _read(path)
+        for reached in (0, entry.reached):
+            next_to_draw(np.array([-1, 0, 0, -1]), entry.come_to(reached) or 0.0)
 
 
 def test_a_rehearsal_leaves_the_journal_of_the_arm_alone() -> None:
@@ -81,4 +188,4 @@ def test_a_changed_file_has_another_digest(tmp_path: Path) -> None:
 
 def test_a_folder_that_takes_no_journal_is_said_at_once(tmp_path: Path) -> None:
     with pytest.raises(OutputError, match="there is no folder"):
-        Journal(tmp_path / "none" / "traj.csv.journal", BEGINNING)
+        Journal(tmp_path / "none" / "traj.csv.journal", BEGINNING, InstantClock())
