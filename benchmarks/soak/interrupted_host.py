@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import resource
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -74,6 +75,7 @@ class Host:
                 with self._in_place(), Path(os.devnull).open("rb") as nothing:
                     for descriptor, file in enumerate((nothing.fileno(), say, say)):
                         os.dup2(file, descriptor)
+                    sys.stdout = sys.stderr = os.fdopen(say, "w", buffering=1)  # those there may be files, which seek
                     code = main(self.arguments)
             finally:
                 os._exit(code)
