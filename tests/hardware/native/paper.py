@@ -24,6 +24,8 @@ def ink(emulator: Emulator, arm: Arm) -> list[FloatArray]:
     if not all(len(one.starts_s) for one in channels):
         return []
     times_s = np.arange(max(one.starts_s[0] for one in channels), min(one.starts_s[-1] for one in channels), _STEP_S)
+    if not len(times_s):
+        return []
     held = np.logical_and.reduce([_is_held(one, times_s) for one in channels])
     pieces = np.split(np.arange(len(times_s)), np.flatnonzero(held[1:] != held[:-1]) + 1)
     lines: list[FloatArray] = []
