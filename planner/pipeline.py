@@ -141,7 +141,8 @@ def _strokes(drawing: Drawing, svg_to_arm: FloatArray, arm: Arm, settings: PlanS
     strokes = join_strokes(strokes, _JOIN_SHARE * settings.tolerance_mm)
     sheets = posture_sheets(arm, settings.weights)
     if settings.skip_unreachable:
-        strokes, lost_mm, lost_whole = clip_strokes(strokes, _in_reach(sheets))
+        strokes, lost_mm, lost_whole = clip_strokes(
+            strokes, _in_reach(sheets), max(float(sheet.radii_mm[-1]) for sheet in sheets))
         if lost_mm or lost_whole:
             warnings.append(f"out of reach and left out: {lost_mm:.1f} mm of line; {lost_whole} strokes or taps whole")
         if not strokes:

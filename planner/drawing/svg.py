@@ -10,13 +10,14 @@ import numpy as np
 
 from planner.arrays import FloatArray, frozen
 from planner.drawing.drawing import Drawing
-from planner.drawing.normalised import read_normalised
+from planner.drawing.normalised import LARGEST_COORDINATE, read_normalised
 from planner.drawing.rewrite import rewrite
 from planner.drawing.source import Survey, read_source, survey
 from planner.drawing.usvg import NormalisationFailed, normalise
 from planner.errors import DrawingError
 
 MM_PER_PX = 25.4 / 96.0
+_SMALLEST_PAGE, _LARGEST_PAGE = 1e-6, LARGEST_COORDINATE
 
 
 def read_drawing(path: Path) -> Drawing:
@@ -30,13 +31,16 @@ def read_drawing(path: Path) -> Drawing:
     found = survey(data, source)
     rewritten, unusable = rewrite(data, found, source)
     try:
-        normalised = read_normalised(normalise(rewritten))
+        normalised = read_normalised(normalise(rewritten), source)
     except NormalisationFailed as failure:
         raise DrawingError(source, failure.reason) from None
     skipped = dict(sorted((unusable + normalised.skipped).items()))
     if not normalised.outlines:
         raise DrawingError(source, _nothing_drawable(found, skipped))
-    user_to_page, page_mm = _page(normalised.root, found.root)
+    try:
+        user_to_page, page_mm = _page(normalised.root, found.root)
+    except ValueError as error:
+        raise DrawingError(source, str(error)) from None
     return Drawing(source, normalised.outlines, user_to_page, page_mm, skipped)
 
 
@@ -44,10 +48,14 @@ def _page(root: Mapping[str, str], original: Mapping[str, str]) -> tuple[FloatAr
     """user_to_page (2, 3) and the size of the page, from the size and viewBox of the normalised root.
 
     CSS pixels are 1/96 inch. Of width and height, one that is missing follows from the other by the viewBox; without
-    any size the page ends where the drawing does.
+    any size the page ends where the drawing does. Errors: ValueError where a number is no size or place on a page.
     """
     size = np.array([float(root["width"]), float(root["height"])])
     left, top, width, height = (float(value) for value in root["viewBox"].split())
+    sizes = np.array([*size, width, height])
+    if not ((sizes >= _SMALLEST_PAGE) & (sizes <= _LARGEST_PAGE)).all() or max(abs(left), abs(top)) > _LARGEST_PAGE:
+        raise ValueError(f"its width, height or viewBox is beyond {_SMALLEST_PAGE:g} to {_LARGEST_PAGE:g}"
+                         " (give it the size of a page)")
     if "viewBox" in original and ("width" in original) != ("height" in original):
         known = 0 if "width" in original else 1
         size[1 - known] = size[known] * (width, height)[1 - known] / (width, height)[known]
