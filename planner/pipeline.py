@@ -61,20 +61,25 @@ _BLOCK_SAMPLES = 65_536
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Plan:
+    """drawing: what was planned, as it was read."""
+
     trajectory: Trajectory
     summary: PlanSummary
+    drawing: Drawing
 
 
 def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Workers = ALONE) -> Plan:
     """Plan one drawing. The result is the same whoever does the work. Errors: PlannerError, before any result
     exists."""
+    report("reading", 0, 1)
     kit = Kit.of(load_arm(settings.arm), settings)
     arm = kit.arm
     lift_mm = _lift_mm(arm, settings)
     with crew_of(_worth_hiring(workers, drawing_file), partial(make_ready, kit)) as crew:
-        report("reading", 0, 1)
-        drawing = read_drawing(drawing_file)
+        drawing = read_drawing(drawing_file, partial(report, "reading"))
+        report("placing", 0, 1)
         svg_to_arm, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
+        report("joining", 0, 1)
         strokes, warnings = _strokes(drawing, svg_to_arm, arm, settings)
         report("ordering strokes", 0, 1)
         strokes = _ordered(strokes, arm, settings, lift_mm)
@@ -83,7 +88,7 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
     warnings += notes + more_notes
     trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, timed, hops)
     _verify(trajectory, arm)
-    return Plan(trajectory, _summary(trajectory, strokes, timed, hops, scale, size_mm, drawing, warnings))
+    return Plan(trajectory, _summary(trajectory, strokes, timed, hops, scale, size_mm, drawing, warnings), drawing)
 
 
 def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> tuple[list[FloatArray], list[str]]:

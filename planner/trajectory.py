@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import stat
+import sys
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -16,6 +17,7 @@ import numpy as np
 
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.errors import OutputError, TrajectoryFileError
+from planner.files import STANDARD_OUTPUT_DESCRIPTOR, is_standard_output
 
 FORMAT_VERSION = 1
 TRAVELLING = -1
@@ -77,9 +79,16 @@ class Trajectory:
 def written_aside(target: Path, *, binary: bool = False) -> Iterator[IO[str] | IO[bytes]]:
     """A file that takes the place of `target` only once it is complete and on disk; nothing is left
     behind otherwise. A symbolic link stays one, and the file that it points to is replaced; a device or
-    a pipe is written to as it is. Errors: OutputError."""
+    a pipe is written to as it is, and so is standard output; a reader of that who has gone away (`| head`) is no
+    error. Errors: OutputError."""
     aside = None
     try:
+        if is_standard_output(target):
+            if sys.stdout is not None:
+                sys.stdout.flush()
+            with suppress(BrokenPipeError), _opened(os.dup(STANDARD_OUTPUT_DESCRIPTOR), binary) as file:
+                yield file
+            return
         if target.is_dir():
             raise OutputError(str(target), "it is a folder")
         if target.exists() and not target.is_file():
@@ -101,7 +110,8 @@ def written_aside(target: Path, *, binary: bool = False) -> Iterator[IO[str] | I
         aside.replace(final)
         aside = None
     except OSError as error:
-        raise OutputError(str(target), error.strerror or str(error)) from error
+        name = "to standard output" if is_standard_output(target) else str(target)
+        raise OutputError(name, error.strerror or str(error)) from error
     finally:
         if aside is not None:
             with suppress(OSError):
@@ -164,7 +174,7 @@ def read_trajectory(source: Path) -> Trajectory:
             header, columns, first_line = _read_head(name, file)
             table = _read_rows(name, file, first_line, len(columns) + 3)
     except OSError as error:
-        raise TrajectoryFileError(name, None, f"cannot be read: {error.strerror}") from error
+        raise TrajectoryFileError(name, None, f"cannot be read: {error.strerror or error}") from error
     rate_hz = header.rate_hz
     _check_rows(name, table, rate_hz, first_line)
     if abs(header.duration_s - table[-1, 0]) > 0.5 / rate_hz:

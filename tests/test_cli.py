@@ -74,7 +74,7 @@ def planned(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException | None],
         def plan(drawing: Path, settings: PlanSettings, report: Callable[[str, int, int], None],
                  workers: Workers) -> _Plan:
             asked.append((drawing, settings))
-            report("timing", 1, 2)
+            report("travels", 1, 2)
             if error is not None:
                 raise error
             return _Plan(_sweep(), _Summary())

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from planner.cli.files import output_file
 from planner.cli.interrupts import interrupts_remembered
 from planner.cli.parser import Parser
 from planner.cli.plan import add_plan_options, settings_of
@@ -80,8 +81,8 @@ def _table(outcomes: Sequence[Outcome]) -> list[str]:
 def _parser() -> Parser:
     parser = Parser("plan batch", _DESCRIPTION, _EPILOG)
     parser.usage = "plan batch FOLDER [-o OUTFOLDER] [options of plan]"
-    parser.add_argument("folder", type=Path, metavar="FOLDER")
-    parser.add_argument("-o", "--output", type=Path, metavar="OUTFOLDER",
+    parser.add_argument("folder", type=output_file, metavar="FOLDER")
+    parser.add_argument("-o", "--output", type=output_file, metavar="OUTFOLDER",
                         help="where the trajectories go, made if missing (default: beside the drawings)")
     add_plan_options(parser)
     return parser

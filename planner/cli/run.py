@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING
 
+from planner.cli.files import input_file, output_file
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import number
-from planner.cli.terminal import Show, print_lines, print_note, progress
+from planner.cli.terminal import Show, print_lines, print_note, print_summary, progress
 from planner.errors import HardwareError, UsageError
 
 if TYPE_CHECKING:
@@ -121,13 +121,13 @@ def run(arguments: list[str]) -> int:
         lines += save_pictures(options.picture, trajectory, arm, positions, simulated.recording.positions,
                                beginning.next_stroke)
     if not options.quiet:
-        print_lines(lines)
+        print_summary(lines, *options.picture)
     return 0 if complete else EXIT_STOPPED
 
 
 def _parser() -> Parser:
     parser = Parser("plan run", _DESCRIPTION, _EPILOG)
-    parser.add_argument("trajectory", type=Path, metavar="traj.csv")
+    parser.add_argument("trajectory", type=input_file, metavar="traj.csv", help="- for standard input")
     parser.add_argument("--driver", default="sim", metavar="NAME",
                         help="what moves the arm: sim, mujoco, native, maestro, maestro-crc, ssc32, feetech or "
                              "dynamixel (default: %(default)s)")
@@ -149,10 +149,10 @@ def _parser() -> Parser:
     parser.add_argument("--servos", choices=("ideal", "real"), default="ideal",
                         help="sim: joints that follow exactly within their speeds, or with the resolution, dead band "
                              "and backlash of the arm file and a lag (default: %(default)s)")
-    parser.add_argument("--picture", type=Path, action="append", default=[], metavar="FILE",
+    parser.add_argument("--picture", type=output_file, action="append", default=[], metavar="FILE",
                         help="sim, mujoco: what was drawn, as .svg at its true size, as .png or .pdf beside what was "
                              "wanted; may be given more than once")
-    parser.add_argument("--film", type=Path, metavar="FILE", help="mujoco: a .gif or .mp4 of the arm at work")
+    parser.add_argument("--film", type=output_file, metavar="FILE", help="mujoco: a .gif or .mp4 of the arm at work")
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary")
     return parser
 

@@ -7,9 +7,11 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from planner.errors import OutputError
+from planner.files import is_standard_output
 
 if TYPE_CHECKING:
     from rich.progress import TaskID
@@ -35,6 +37,16 @@ def print_lines(lines: Iterable[str]) -> None:
         raise OutputError("to standard output", error.strerror or str(error)) from error
 
 
+def print_summary(lines: Iterable[str], *results: Path) -> None:
+    """What people read about results: on standard output, unless a result itself goes there, else on standard error.
+    Errors: OutputError."""
+    if not any(map(is_standard_output, results)):
+        print_lines(lines)
+        return
+    for line in lines:
+        _print_aside(line)
+
+
 def print_warnings(warnings: Iterable[str]) -> None:
     for warning in warnings:
         print_note(f"warning: {warning}")
@@ -42,10 +54,14 @@ def print_warnings(warnings: Iterable[str]) -> None:
 
 def print_note(message: str) -> None:
     """One line on standard error, in the program's name."""
+    _print_aside("plan: " + " ".join(message.splitlines()))
+
+
+def _print_aside(line: str) -> None:
     if sys.stderr is None:
         return
     try:
-        print("plan: " + " ".join(message.splitlines()), file=sys.stderr, flush=True)
+        print(line, file=sys.stderr, flush=True)
     except OSError:  # nobody is left to tell
         _silence(sys.stderr)
 

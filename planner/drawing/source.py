@@ -39,7 +39,7 @@ class Survey:
 
 def read_source(path: Path) -> bytes:
     """The XML bytes of an .svg or gzipped .svgz file; DrawingError if there are none or too many."""
-    source = path.name
+    source = path.name or str(path)
     try:
         if path.is_dir():
             raise DrawingError(source, "is a folder, not an SVG file")

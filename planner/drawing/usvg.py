@@ -67,8 +67,8 @@ def normalise(svg: bytes, work_limit: int = WORK_LIMIT) -> bytes:
         if not output.is_file():
             raise NormalisationFailed(_complaint(folder / "stderr"))
         if output.stat().st_size > OUTPUT_LIMIT_BYTES:
-            raise NormalisationFailed(f"once its `use` elements and markers are drawn out it is larger than the limit of"
-                                      f" {OUTPUT_LIMIT_BYTES >> 20} MB (split it into several drawings)")
+            raise NormalisationFailed("once its `use` elements and markers are drawn out it is larger than the limit"
+                                      f" of {OUTPUT_LIMIT_BYTES >> 20} MB (split it into several drawings)")
         return output.read_bytes()
 
 

@@ -57,7 +57,8 @@ def test_arcs_do_not_multiply_without_bound(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_copies_that_lie_on_each_other_are_drawn_ten_times_at_most(tmp_path: Path) -> None:
-    levels = "".join(f'<g id="{after}">' + f'<use href="#{before}"/>' * 3 + "</g>" for before, after in pairwise("abcdef"))
+    levels = "".join(f'<g id="{after}">' + f'<use href="#{before}"/>' * 3 + "</g>"
+                     for before, after in pairwise("abcdef"))
     found = read_drawing(drawn(tmp_path, f'<g id="a">{LINE}</g>{levels}<path d="M9 9h1"/>'))
     n_copies = sum(3 ** level for level in range(6))
     assert len(found.outlines) == 11 and set(found.skipped.values()) == {n_copies - 10}
@@ -70,3 +71,15 @@ def test_a_curve_that_needs_too_many_points_is_refused(tmp_path: Path, monkeypat
     outlines = read_drawing(drawn(tmp_path, '<circle cx="50" cy="50" r="40"/>')).outlines
     with pytest.raises(PlanError, match="more than 1000 points"):
         flatten.flatten_all(outlines, np.array([[1e6, 0.0, 0.0], [0.0, 1e6, 0.0]]), 0.01)
+
+
+@pytest.mark.parametrize(("body", "advice"), [
+    ("", "draw lines or shapes"),
+    ("<text y='9'>words</text>", "convert text to paths"),
+    ("<image width='9' height='9' href='data:image/png;base64,AAAA'/>", "trace pictures to paths"),
+    ('<rect width="0" height="5"/>', "a size, and a fill or a stroke"),
+    ('<path d="M0 0L1e12 5"/>', "below 1e9"),
+])
+def test_a_drawing_of_nothing_says_what_to_do(tmp_path: Path, body: str, advice: str) -> None:
+    with pytest.raises(DrawingError, match=f"nothing to draw: .*{advice}"):
+        read_drawing(drawn(tmp_path, body))
