@@ -26,10 +26,12 @@ _PIECES = tuple(re.compile(pattern, re.DOTALL) for pattern in (
     rb"<(\w+)[^<>]*>[^<>]*</\1>", rb"</?[a-zA-Z][^<>]*>"))
 _WORDS = tuple(word.encode() for word in (
     '<use href="#a"/>', '<g transform="scale(1e9)">', "</g>", "<g>", 'transform="matrix(0 0 0 0 0 0)"', "skewX(90)",
-    'clip-path="url(#a)"', 'mask="url(#a)"', 'id="a"', '<path d="M1 1h0"/>', "M0 0", "z", "A1 1 0 0 1", "A1e9 1e-9 7 1 0",
+    'clip-path="url(#a)"', 'mask="url(#a)"', 'id="a"', '<path d="M1 1h0"/>', "M0 0", "z", "A1 1 0 0 1",
+    "A1e9 1e-9 7 1 0",
     'stroke-dasharray="1e-9"', "<!--", "]]>", "<![CDATA[", "&#0;", "&amp;", "\0", "\ufeff", 'viewBox="0 0 0 0"',
-    'preserveAspectRatio="xMaxYMin slice"', 'width="1e9"', "<symbol>", "<marker id='a'>", "<style>*{marker:url(#a)}</style>",
-    '<text>a</text>', '<image href="x"/>', "<switch>", '<svg viewBox="0 0 1 1">', "</svg>", 'style="display:none"', "%", ",",
+    'preserveAspectRatio="xMaxYMin slice"', 'width="1e9"', "<symbol>", "<marker id='a'>",
+    "<style>*{marker:url(#a)}</style>",
+    '<text>a</text>', '<image href="x"/>', "<switch>", '<svg viewBox="0 0 1 1">', "</svg>", 'style="display:none"', "%",
     'fill="url(#a)"', '<pattern id="a">', 'xml:space="preserve"', 'font-size="1e9"', 'd="M0 0L1e8 1e-8"'))
 
 
@@ -45,7 +47,7 @@ def seeds(folders: tuple[Path, ...]) -> list[bytes]:
 def drawing(folders: tuple[Path, ...], seed: int, item: int) -> bytes:
     """The item's drawing; the one before the first is whole."""
     texts = seeds(folders)
-    chance = random.Random(f"{seed}/{item}")
+    chance = random.Random(f"{seed}/{item}")  # noqa: S311
     return texts[0] if item < 0 else mutated(chance.choice(texts), texts, _PIECES, _WORDS, chance)
 
 

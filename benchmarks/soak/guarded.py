@@ -160,15 +160,12 @@ def _work(attempt: Callable[[int, Path], tuple[str, str]], desk: Path, line: Con
 def told(found: Iterator[Outcome], keep: Path, write: Callable[[int, Path], None], n_items: int) -> int:
     """Print a table of the outcomes; keep what showed a fault. The exit code: 1 where anything did."""
     counts: dict[str, int] = {}
-    shown: set[str] = set()
     for done, outcome in enumerate(found, 1):
         counts[outcome.kind] = counts.get(outcome.kind, 0) + 1
         if outcome.is_fault:
             keep.mkdir(parents=True, exist_ok=True)
             write(outcome.item, keep)
             print(f"item {outcome.item}: {outcome.kind}: {outcome.message[:400]}", file=sys.stderr, flush=True)
-        elif outcome.message and outcome.kind not in shown:
-            shown.add(outcome.kind)
         if done % 500 == 0:
             print(f"{done} of {n_items}", file=sys.stderr, flush=True)
     for kind, count in sorted(counts.items(), key=lambda pair: -pair[1]):

@@ -1,7 +1,7 @@
 """Mutations of text files: what disks, editors, exporters and ill will do to them.
 
-As libFuzzer's: bytes flip, chunks vanish, repeat and come from other files, numbers become extremes, words of the format
-turn up anywhere. Equal seeds give equal files.
+As libFuzzer's: bytes flip, chunks vanish, repeat and come from other files, numbers become extremes, words of the
+format turn up anywhere. Equal seeds give equal files.
 """
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import random
 import re
 from collections.abc import Sequence
 
-EXTREMES = tuple(word.encode() for word in (
-    "0 -0 1 -1 1e-12 1e-300 1e-320 1e8 1e9 -1e9 1e10 2147483648 1e38 1e300 1e308 -1e308 1e999 nan NaN inf -inf Infinity "
-    "1e 1.2.3 0x10 1_0 999999999999999999999999 0.0000000000000000000001 100% 1e3mm").split())
+EXTREMES = (b"0", b"-0", b"1", b"-1", b"1e-12", b"1e-300", b"1e-320", b"1e8", b"1e9", b"-1e9", b"1e10", b"2147483648",
+            b"1e38", b"1e300", b"1e308", b"-1e308", b"1e999", b"nan", b"NaN", b"inf", b"-inf", b"Infinity", b"1e",
+            b"1.2.3", b"0x10", b"1_0", b"999999999999999999999999", b"0.0000000000000000000001", b"100%", b"1e3mm")
 _NUMBER = re.compile(rb"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _LONGEST_CHUNK = 400
 _LARGEST = 2_000_000
