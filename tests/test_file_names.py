@@ -32,7 +32,8 @@ Command = Callable[..., tuple[int, bytes, str]]
 
 
 @pytest.fixture
-def command(desk: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]) -> Iterator[Command]:
+def command(desk: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]
+            ) -> Iterator[Command]:
     """Runs a command in the desk's folder with bytes on standard input: exit code, standard output, standard error."""
     monkeypatch.chdir(desk)
     before = os.dup(0)

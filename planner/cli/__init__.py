@@ -36,8 +36,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print_note("interrupted")
         return EXIT_INTERRUPTED
-    except MemoryError:
-        print_note("error: not enough memory for this; try a smaller drawing, a lower --rate or a larger --tolerance")
+    except MemoryError as error:
+        asked = f" ({error})" if str(error) else ""
+        print_note(f"error: this machine has not enough memory for it{asked}; a lower --rate, a larger --tolerance and"
+                   " fewer --workers take less")
         return EXIT_NO_MEMORY
     except Exception as error:
         if os.environ.get(TRACEBACK_VARIABLE):
