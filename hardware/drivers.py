@@ -31,6 +31,8 @@ _STREAMING: dict[str, Callable[[Arm], Controller]] = {
     "feetech": feetech_bus,
     "dynamixel": dynamixel_bus,
 }
+TELL_WHERE_THEY_STAND = ("feetech", "dynamixel")
+"""Servos of these leap nowhere when they are attached."""
 
 DRIVERS = (*SIMULATORS, _NATIVE, *_STREAMING)
 

@@ -74,12 +74,12 @@ class Maestro:
     def take_answer(self, witness: int, received: bytearray) -> bool:
         if len(received) < 2 * maestro.REPLY_SIZE:
             return False
-        errors, position = bytes(received[:maestro.REPLY_SIZE]), bytes(received[maestro.REPLY_SIZE:2 * maestro.REPLY_SIZE])
+        errors, position = received[:maestro.REPLY_SIZE], received[maestro.REPLY_SIZE:2 * maestro.REPLY_SIZE]
         received.clear()
         _complain(errors)
         if not maestro.position_us(position):
-            raise HardwareError("the Maestro was reset in the middle of the run; check its power, lift the pen, put the "
-                                "arm to where it parks, and go on with --resume")
+            raise HardwareError("the Maestro was reset in the middle of the run; check its power, lift the pen, put "
+                                "the arm to where it parks, and go on with --resume")
         return True
 
     def _position_us(self, port: Port, channel: int) -> float:
@@ -94,7 +94,7 @@ class Maestro:
         return reply
 
 
-def _complain(reply: bytes) -> None:
+def _complain(reply: bytes | bytearray) -> None:
     errors = maestro.errors(reply)
     if errors:
         raise HardwareError(f"the Maestro reports {', '.join(errors)}; see its Serial settings in the Maestro Control "
