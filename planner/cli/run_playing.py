@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from hardware.clock import Clock, InstantClock, WallClock
 from hardware.driver import Driver
-from hardware.drivers import MUJOCO, SIMULATED, TELL_WHERE_THEY_STAND, make_driver
+from hardware.drivers import MUJOCO, SIMULATED, TELL_WHERE_THEY_STAND, calibration_of, make_driver
 from hardware.gentle_move import in_words
 from hardware.player import play
 from hardware.playing import Played, Progress
@@ -18,7 +18,7 @@ from hardware.simulated_arm import Recording, Servos, SimulatedArm
 from planner.arms.arm import Arm
 from planner.cli.controls import KEYS, controls
 from planner.cli.resuming import RunJournal
-from planner.cli.terminal import Show, print_note, progress
+from planner.cli.terminal import Show, print_note, print_warnings, progress
 from planner.errors import HardwareError
 
 if TYPE_CHECKING:
@@ -60,7 +60,12 @@ def play_out(options: argparse.Namespace, arm: Arm, programme: Programme, journa
 
 def _simulated(options: argparse.Namespace, arm: Arm, clock: Clock) -> SimulatedArm | MujocoArm | None:
     if options.driver == SIMULATED:
-        return SimulatedArm(arm, clock, Servos(options.servos))
+        servos = Servos(options.servos)
+        if servos is Servos.REAL and calibration_of(SIMULATED, arm) is None:
+            print_warnings([f"the file of arm '{arm.name}' says neither servo nor bus of all its joints: their servos "
+                            "lag behind, without dead band, backlash and resolution"])
+            servos = Servos.LAGGING
+        return SimulatedArm(arm, clock, servos)
     if options.driver == MUJOCO:
         from hardware.mujoco_arm import MujocoArm
 
