@@ -17,8 +17,10 @@ _ANSWERS_AFTER_S = 0.004
 
 @dataclass
 class Bench:
-    """Stands for a Line, its Port and a Clock. dies_after, resets_after: so many bytes to the model, and it is gone, or
-    is `anew()`, after `boot_s` in which it hears nothing. busy: (from, until) of every message on the line."""
+    """Stands for a Line, its Port and a Clock.
+
+    dies_after, resets_after: so many bytes to the model, and it is gone, or
+    there is `anew()` after `boot_s` in which nothing is heard. models: those that there have been, in order."""
 
     model: Model
     baud: float = 115_200.0
@@ -30,8 +32,13 @@ class Bench:
     latency_s: float = _ANSWERS_AFTER_S
     taken: int = 0
     answers: list[tuple[float, bytes]] = field(default_factory=list)
+    models: list[Model] = field(default_factory=list)
+    opened: Callable[[], None] = lambda: None
     _now_s: float = 0.0
     _deaf_until_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.models.append(self.model)
 
     def now_s(self) -> float:
         return self._now_s
@@ -40,6 +47,7 @@ class Bench:
         self._now_s = max(self._now_s, deadline_s)
 
     def open(self, usual_baud: int) -> Bench:
+        self.opened()
         return self
 
     def seconds(self, size: int) -> float:
@@ -50,6 +58,7 @@ class Bench:
         if before < self.resets_after <= self.taken and self.anew is not None:
             self._hear(message[:round(self.resets_after) - before])
             self.model, self._deaf_until_s = self.anew(), self._now_s + self.boot_s
+            self.models.append(self.model)
             message = b""
         self._hear(message[:max(min(len(message), round(min(self.dies_after, self.taken)) - before), 0)])
 

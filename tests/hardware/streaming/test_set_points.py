@@ -39,6 +39,18 @@ def told(model: Model, n: int) -> FloatArray:
     raise AssertionError
 
 
+def heard(model: Model) -> int:
+    """How many whole set points a model of five joints has carried out, those of attaching among them."""
+    match model:
+        case MaestroModel():
+            return len(model.targets) // 5
+        case Ssc32Model():
+            return len(model.moves)
+        case FeetechModel() | DynamixelModel():
+            return len(model.goals)
+    raise AssertionError
+
+
 @pytest.mark.parametrize("name", MAKERS)
 def test_set_points_arrive_in_order_and_right_to_half_a_step(name: str) -> None:
     on_bus = name in ("feetech", "dynamixel")
