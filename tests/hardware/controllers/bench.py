@@ -33,6 +33,7 @@ class Bench:
     taken: int = 0
     answers: list[tuple[float, bytes]] = field(default_factory=list)
     models: list[Model] = field(default_factory=list)
+    received: bytearray = field(default_factory=bytearray)
     opened: Callable[[], None] = lambda: None
     _now_s: float = 0.0
     _deaf_until_s: float = 0.0
@@ -54,7 +55,8 @@ class Bench:
         return 10 * size / self.baud
 
     def write(self, message: bytes) -> None:
-        before, self.taken = self.taken, self.taken + len(message)
+        self.received += message
+        before, self.taken = self.taken, len(self.received)
         if before < self.resets_after <= self.taken and self.anew is not None:
             self._hear(message[:round(self.resets_after) - before])
             self.model, self._deaf_until_s = self.anew(), self._now_s + self.boot_s

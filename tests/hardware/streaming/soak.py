@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from unittest import mock
 
 import numpy as np
 import shapely
@@ -19,12 +18,12 @@ from hardware.journal import journal_path, read_journal
 from hardware.tip import link_nodes_mm
 from planner.arms.arm_file import load_arm
 from planner.arrays import BoolArray, FloatArray
-from planner.cli import main
 from planner.trajectory import read_trajectory
 from tests.hardware.controllers.bench import Bench
 from tests.hardware.controllers.lines import Model
 from tests.hardware.controllers.maestro import MaestroModel
 from tests.hardware.controllers.ssc32 import Ssc32Model
+from tests.hardware.streaming.on_bench import plan_run
 
 SAME_MM = 0.05
 _ONE_SPOT_MM = 1e-6
@@ -115,13 +114,8 @@ class Soak:
         return model
 
     def _run(self, bench: Bench, *, resume: bool) -> int:
-        def line(name: str, baud: int | None, opened: object) -> Bench:
-            return bench
-
-        arguments = ["run", str(self._csv), "--driver", self._driver, "--port", "bench", "--quiet"]
-        with (mock.patch("planner.cli.run_playing.Line", line),
-              mock.patch("planner.cli.run_playing.WallClock", return_value=bench)):
-            return main([*arguments, "--resume"] if resume else arguments)
+        options = ["--driver", self._driver, "--quiet", *(["--resume"] if resume else [])]
+        return plan_run(bench, str(self._csv), *options)
 
     def _ink(self, models: Sequence[Model]) -> list[FloatArray]:
         """Lines (n, 2) in mm that models have left on the paper since they were looked at last."""
