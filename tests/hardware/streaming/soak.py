@@ -37,7 +37,7 @@ class Outcome:
     """What became of one drawing.
 
     dead, reset: interruptions. twice: how often a stroke was drawn whole that was there already; undoubted: strokes of
-    which that is true though no journal had them in doubt or unfinished. claimed: strokes that a journal called drawn
+    which that is true though no journal had them in doubt or just begun. claimed: strokes that a journal called drawn
     too early; lost: those that never were. largest_mm: how far ink is from that of an undisturbed run, or a stroke
     from ink.
     """
@@ -80,7 +80,7 @@ class Soak:
             entry = read_journal(journal)  # none yet where it died while it was attached
             if entry is not None:
                 outcome.claimed += np.flatnonzero(times[:entry.next_stroke] == 0).tolist()
-                excused |= {*entry.in_doubt, entry.next_stroke}
+                excused |= {*entry.in_doubt, max(entry.next_stroke, entry.last_sent + 1)}
                 assert before is None or entry.next_stroke >= before.next_stroke
             if code == 0:
                 break
