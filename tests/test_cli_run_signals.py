@@ -47,11 +47,10 @@ def test_a_terminal_that_is_closed_stops_and_parks(csv: Path) -> None:
     assert entry.ended == "stopped"
 
 
-@pytest.mark.parametrize(("numbers", "ended"), [
-    ([signal.SIGTERM], "stopped"), ([signal.SIGHUP], "stopped"), ([signal.SIGHUP] * 3, "stopped"),
-    ([signal.SIGTERM, signal.SIGHUP], "stopped"), ([signal.SIGINT, signal.SIGINT], "emergency stop")])
+@pytest.mark.parametrize("numbers", [[signal.SIGTERM], [signal.SIGHUP], [signal.SIGHUP] * 3,
+                                     [signal.SIGTERM, signal.SIGHUP]])
 def test_signals_stop_and_a_closed_terminal_never_stops_in_the_midst(
-        numbers: list[signal.Signals], ended: str, csv: Path) -> None:
+        numbers: list[signal.Signals], csv: Path) -> None:
     """A shell and the system may both tell of it."""
     process = _started(csv)
     for number in numbers:
@@ -59,11 +58,11 @@ def test_signals_stop_and_a_closed_terminal_never_stops_in_the_midst(
         time.sleep(0.05)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert ("the arm is parked" in out) == (ended == "stopped")
+    assert "the arm is parked" in out
     assert "--resume goes on from stroke 0 of 0..0" in err
     entry = read_journal(journal_path(csv, simulated=True))
     assert entry is not None
-    assert entry.ended == ended
+    assert entry.ended == "stopped"
 
 
 def test_what_nohup_asks_for_is_kept(csv: Path) -> None:
