@@ -17,7 +17,7 @@ _MOST_MISSED = 3
 _LAST_CHANCE_S = 0.25
 """A host that was kept from listening listens for so long before it believes that there is no answer."""
 _LONGEST_ANSWER = 256
-_ASK_EVERY_S = 0.1
+_ASK_EVERY_S = 0.05
 """Where a line has no time for a question with every set point."""
 _SHARE = 0.8
 """Of the time between two set points, for all that is on the line."""
