@@ -34,7 +34,7 @@ LABELS = np.where(np.arange(N) % (STROKE + HOP) < STROKE, np.arange(N) // (STROK
 N_STROKES = int(LABELS.max()) + 1
 LAST = [int(np.flatnonzero(np.equal(LABELS, stroke))[-1]) for stroke in range(N_STROKES)]
 DOUBT_S = {"maestro": 0.05, "maestro-crc": 0.05, "ssc32": 0.05, "feetech": 0.15, "dynamixel": 0.5}
-"""How long what was sent last may be in doubt while all is well; a slow bus is asked by turns, twenty times a second."""
+"""How long what was sent last may be in doubt while all is well; a slow bus is asked by turns, at 20 Hz in all."""
 
 
 def _arm(name: str) -> Arm:
