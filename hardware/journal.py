@@ -120,8 +120,8 @@ class Journal:
         """Begin a new journal in place of any other, on disk when this returns. Errors: OutputError."""
         self._path, self.next_stroke, self._last_sent = path, beginning.next_stroke, -1
         self._torn = False
-        if path.exists() and not path.is_file():
-            raise OutputError(str(path), "it is no file")
+        if os.path.lexists(path) and not path.is_file():
+            raise OutputError(str(path), "it is no file")  # a pipe would be waited for
         with written_aside(path) as file:
             cast("IO[str]", file).write(_line(
                 journal=_VERSION, sha256=beginning.sha256, arm=beginning.arm, driver=beginning.driver,

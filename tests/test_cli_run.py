@@ -104,6 +104,7 @@ def test_a_dry_run_says_what_would_be_sent_and_sends_nothing(
     (["--resume"], "there is nothing to resume: no journal"),
     (["--from-stroke", "10"], "there is no stroke 10; the drawing has 0 to 9"),
     (["--picture", "drawn.bmp"], "a picture file ends in one of"),
+    (["--picture", "d" * 300 + ".png"], "File name too long"),
     (["--arm", "scara"], "moves the joints q1_deg, q2_deg"),
     (["--arm", "drawing_arm_2022"], "line "),
 ])

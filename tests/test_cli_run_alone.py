@@ -153,12 +153,13 @@ def test_a_pipe_is_drawn_without_a_journal_and_never_resumed(
 
 @pytest.mark.parametrize("options", [[], ["--resume"]])
 def test_standard_input_gets_no_journal_even_where_it_is_a_file(csv: Path, options: list[str]) -> None:
+    before = sorted(Path("/dev").glob("*.journal*"))
     with csv.open("rb") as file:
         done = subprocess.run([*RUN, "/dev/stdin", "--fast", *options], cwd=ROOT, stdin=file, capture_output=True,
                               text=True, timeout=60, check=False)
     assert done.returncode == (2 if options else 0)
     assert "--resume to go by" in done.stderr or "cannot be told" in done.stderr
-    assert not Path("/dev/stdin.sim.journal").exists()
+    assert sorted(Path("/dev").glob("*.journal*")) == before
     assert list(csv.parent.iterdir()) == [csv]
 
 
@@ -167,6 +168,14 @@ def test_a_pipe_in_a_journals_place_holds_nothing_up(csv: Path, capsys: pytest.C
     assert main(["run", str(csv), "--fast", "--quiet"]) == 0
     assert "there will be nothing for --resume to go by" in capsys.readouterr().err
     assert main(["run", str(csv), "--fast", "--resume"]) == 2
+
+
+def test_a_name_too_long_for_a_journal_is_drawn_without_one(csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    longest = csv.rename(csv.with_name("x" * 248 + ".csv"))
+    assert main(["run", str(longest), "--fast", "--quiet"]) == 0
+    assert "there will be nothing for --resume to go by" in capsys.readouterr().err
+    assert main(["run", str(longest), "--fast", "--resume"]) == 2
+    assert "File name too long" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("content", [

@@ -10,6 +10,14 @@ from planner.errors import OutputError
 
 def check_target(target: Path, *sources: Path) -> None:
     """Errors: OutputError where `target` cannot become a file, or would replace one of the `sources`."""
+    try:
+        _check(target, sources)
+    except OSError as error:  # such as a name that is too long
+        raise OutputError(str(target), error.strerror or str(error)) from error
+
+
+def _check(target: Path, sources: tuple[Path, ...]) -> None:
+    """Errors: OutputError, OSError."""
     final = Path(os.path.realpath(target))  # a symbolic link stays, and what it points to is replaced
     if final.is_dir():
         raise OutputError(str(target), "it is a folder")
