@@ -31,10 +31,11 @@ class Driver(Protocol):
         """
 
     def executed(self) -> int:
-        """How many set points sent so far are known to have been reached; all where the controller does not tell."""
+        """How many set points sent so far are known to have been reached: the controller has said so, or has answered
+        after it had the time to reach them. What a line has taken is not known to have been reached."""
 
     def flush(self) -> None:
-        """Return when everything sent has been reached."""
+        """Return when everything sent is known to have been reached. Errors: HardwareError where that is not heard."""
 
     def emergency_stop(self) -> None:
         """Stop moving now and hold. Never raises because the arm is stopped already."""

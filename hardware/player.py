@@ -32,18 +32,19 @@ _LOWERED_SLOWER = 3
 def play(programme: Programme, arm: Arm, driver: Driver, clock: Clock, *,
          request: Callable[[], Request] = lambda: Request.GO,
          report: Callable[[Progress], None] = lambda progress: None,
-         connected: Callable[[], None] = lambda: None, finished: Callable[[int], None] = lambda stroke: None) -> Played:
+         connected: Callable[[], None] = lambda: None, sent: Callable[[int], None] = lambda stroke: None,
+         finished: Callable[[int], None] = lambda stroke: None) -> Played:
     """Play `programme`: set point k at k / rate after the start, later only by pauses and stalls.
 
     `request()` is asked before every set point. On a pause the arm brakes along the path and the pen goes straight up;
     then it comes down where it was and goes on from there. On a stop it brakes, lifts and goes to the park pose. On an
     e-stop it holds where it is. If something fails that is not the arm, such as `report`, it is stopped before the
     error goes on its way. `report(progress)` is called after every set point and has to be quick;
-    `connected()` once the arm is ready to play, `finished(stroke)` once a stroke is known to be drawn. The driver is
-    closed in any case.
+    `connected()` once the arm is ready to play, `sent(stroke)` once all of a stroke has been sent, `finished(stroke)`
+    once it is known to be drawn. The driver is closed in any case.
     Errors: HardwareError.
     """
-    playing = _Playing(programme, arm, driver, clock, request, report, finished)
+    playing = _Playing(programme, arm, driver, clock, request, report, sent, finished)
     try:
         driver.connect(programme.park)
         connected()
@@ -80,9 +81,10 @@ class _Playing:
     """Where playing is: `_next` is the index of the set point of the programme to be sent next."""
 
     def __init__(self, programme: Programme, arm: Arm, driver: Driver, clock: Clock, request: Callable[[], Request],
-                 report: Callable[[Progress], None], finished: Callable[[int], None]) -> None:
+                 report: Callable[[Progress], None], sent: Callable[[int], None],
+                 finished: Callable[[int], None]) -> None:
         self._programme, self._arm, self._driver, self._clock = programme, arm, driver, clock
-        self._request, self._report, self._finished = request, report, finished
+        self._request, self._report, self._stroke_sent, self._finished = request, report, sent, finished
         stroke = programme.stroke
         self._last_of_stroke = np.flatnonzero((stroke != TRAVELLING) & (stroke != np.append(stroke[1:], TRAVELLING)))
         self._strokes_sent = 0
@@ -111,7 +113,8 @@ class _Playing:
         return End.PLAYED
 
     def tell_nobody(self) -> None:
-        self._report, self._finished = (lambda progress: None), (lambda stroke: None)
+        self._report = lambda progress: None
+        self._stroke_sent = self._finished = lambda stroke: None
 
     def stop(self) -> None:
         """Brake, lift, park; where no way to the park pose is found the arm holds with its pen up."""
@@ -203,6 +206,7 @@ class _Playing:
             stroke = int(self._programme.stroke[self._last_of_stroke[self._strokes_sent]])
             self._unconfirmed.append((self._sent, stroke))
             self._strokes_sent += 1
+            self._stroke_sent(stroke)
         self._sent_at.append((self._sent, index))
         self.note_finished()
         self._tell(paused=False)

@@ -58,6 +58,10 @@ class Played:
     parked: bool
     link: tuple[str, ...]
 
+    @property
+    def complete(self) -> bool:
+        return self.end is End.PLAYED
+
     def lines(self) -> list[str]:
         """The same in words."""
         rests = f"the pen rests {round(self.pen_height_mm, 2) + 0.0:.2f} mm above the paper"

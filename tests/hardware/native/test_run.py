@@ -23,6 +23,7 @@ from planner.drawing.svg import read_drawing
 from planner.trajectory import read_trajectory
 from tests.hardware.emulator.emulator import Emulator
 from tests.hardware.native.paper import ink
+from tests.hardware.real_time import in_real_time
 
 _ARM = load_arm("drawing_arm")
 _STROKES = 5
@@ -33,6 +34,10 @@ _WORST_MM = 0.15
 """A pulse is right to half a step of 0.5 us: 0.025 degrees of each of the joints, which can add up to this."""
 _PLAYS_ON_S = 0.8
 """The controller has motion for less than this."""
+
+
+pytestmark = in_real_time("host and emulated controller share the cores, and either may be kept from them for "
+                          "longer than an answer is waited for")
 
 
 @pytest.fixture(scope="session")
