@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from planner.counted import counted
+
 
 @dataclass(frozen=True, slots=True)
 class PhaseTimes:
@@ -51,13 +53,13 @@ class PlanSummary:
         """A few lines to read."""
         shares = ", ".join(f"{name} {seconds:.1f} s ({100 * share:.0f} %)"
                            for name, seconds, share in self.phases.shares())
-        taps = f", {self.n_taps} of them taps" if self.n_taps else ""
+        taps = f", {self.n_taps} of them {'a tap' if self.n_taps == 1 else 'taps'}" if self.n_taps else ""
         return [
-            f"{self.n_strokes} strokes{taps}: {self.drawn_mm / 1000:.2f} m drawn,"
+            f"{counted(self.n_strokes, 'stroke')}{taps}: {self.drawn_mm / 1000:.2f} m drawn,"
             f" {self.travelled_mm / 1000:.2f} m travelled pen up",
             f"{self.size_mm[0]:.1f} x {self.size_mm[1]:.1f} mm on paper, {self.scale:.3g} times its size on the page",
             f"takes {clock(self.duration_s)} ({shares}); {self.mean_speed_mm_s:.0f} mm/s on paper in the mean",
-            f"{self.n_samples} samples at {self.rate_hz:g} Hz",
+            f"{counted(self.n_samples, 'sample')} at {self.rate_hz:g} Hz",
         ]
 
 

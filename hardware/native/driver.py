@@ -14,6 +14,7 @@ from hardware.codecs import native
 from hardware.codecs.native import End, Fault, Info, Key, Order, Result, State, Status
 from hardware.native.link import Link
 from planner.arrays import FloatArray
+from planner.counted import counted
 from planner.errors import HardwareError
 
 _AHEAD_S = 0.65
@@ -147,8 +148,8 @@ class NativeDriver:
 
     def statistics(self) -> list[str]:
         counts = self._link.counts
-        return [f"link: {counts.frames} key frames sent, {counts.again} of them again after {counts.gone_back} losses; "
-                f"{self._reader.damaged} damaged frames received",
+        return [f"link: {counted(counts.frames, 'key frame')} sent, {counts.again} of them again (gone back "
+                f"{counted(counts.gone_back, 'time')}); {counted(self._reader.damaged, 'damaged frame')} received",
                 f"under-runs: {self._underruns}"]
 
     def _introduce(self) -> None:

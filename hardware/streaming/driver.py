@@ -11,6 +11,7 @@ from hardware.streaming.controller import Controller
 from hardware.streaming.witness import Witness, fits, seconds
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
+from planner.counted import counted
 from planner.errors import HardwareError
 
 _COMING_PERIOD_S = 0.02
@@ -73,8 +74,8 @@ class StreamingDriver:
             self._port = None
 
     def statistics(self) -> list[str]:
-        return [f"{self._sent} set points in {self._bytes} bytes; the controller answered {self._witness.answered} of "
-                f"{self._witness.asked} questions about how it fares"]
+        return [f"{counted(self._sent, 'set point')} in {counted(self._bytes, 'byte')}; the controller answered "
+                f"{self._witness.answered} of {counted(self._witness.asked, 'question')} about how it fares"]
 
     def _connected(self) -> Port:
         if self._port is None:

@@ -11,6 +11,7 @@ from planner.cli.interrupts import interrupts_remembered
 from planner.cli.parser import Parser
 from planner.cli.plan import add_plan_options, settings_of
 from planner.cli.terminal import print_lines, print_note, print_warnings, progress
+from planner.counted import counted
 
 if TYPE_CHECKING:
     from planner.batch import Outcome
@@ -75,7 +76,7 @@ def _table(outcomes: Sequence[Outcome]) -> list[str]:
             lines.append(f"{name:<{width}}  {summary.n_strokes:>7}  {summary.drawn_mm / 1000:>7.2f}"
                          f"  {summary.duration_s:>7.1f}  {outcome.job.target}")
     planned = sum(outcome.summary is not None for outcome in outcomes)
-    return [*lines, f"{planned} of {len(outcomes)} drawings planned"]
+    return [*lines, f"{planned} of {counted(len(outcomes), 'drawing')} planned"]
 
 
 def _parser() -> Parser:

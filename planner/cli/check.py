@@ -38,6 +38,7 @@ def check(arguments: list[str]) -> int:
                         help="how far the pen may be off the drawing (default: %(default)g mm)")
     parser.add_argument("--json", type=output_file, metavar="FILE",
                         help="write the verdict there as well; - for standard output")
+    parser.add_argument("--quiet", action="store_true", help="print the faults alone, and nothing where there is none")
     options = parser.parse_args(arguments)
     sources = [options.trajectory] + ([options.drawing] if options.drawing else [])
     if options.json:
@@ -55,5 +56,5 @@ def check(arguments: list[str]) -> int:
     if options.json:
         with written_aside(options.json) as file:
             cast("IO[str]", file).write(json.dumps(verdict.as_dict(), indent=2) + "\n")
-    print_summary([verdict.text()], *filter(None, [options.json]))
+    print_summary(map(str, verdict.faults) if options.quiet else [verdict.text()], *filter(None, [options.json]))
     return 0 if verdict.passed else EXIT_FAULT

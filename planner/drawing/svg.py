@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from planner.arrays import FloatArray, frozen
+from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.normalised import LARGEST_COORDINATE, read_normalised
 from planner.drawing.rewrite import rewrite
@@ -86,7 +87,7 @@ def _page(root: Mapping[str, str], original: Mapping[str, str]) -> tuple[FloatAr
 
 
 def _nothing_drawable(found: Survey, skipped: Mapping[str, int]) -> str:
-    shapes = "no shapes" if found.n_shapes == 0 else "1 shape" if found.n_shapes == 1 else f"{found.n_shapes} shapes"
+    shapes = counted(found.n_shapes, "shape") if found.n_shapes else "no shapes"
     seen = shapes if found.n_shapes == 0 else f"{shapes}, none of them visible and of any size"
     advice = [what for kind, what in _ADVICE.items() if kind in skipped]
     if not advice:

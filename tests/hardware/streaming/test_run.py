@@ -57,10 +57,10 @@ def _over_a_limit(lines: list[str]) -> list[str]:
 
 
 @pytest.mark.parametrize(("spoil", "options", "message"), [
-    (_over_a_limit, (), r"line \d+: joint q1 at 91 deg is outside its limits"),
+    (_over_a_limit, (), r"line \d+: .*: position of q1: 91 of 90 deg"),
     (lambda lines: lines[:-40], (), r"line \d+: "),
     (lambda lines: [*lines[:-1], lines[-1][:20]], (), r"line \d+: "),
-    (list, ("--arm", "drawing_arm_2022"), "the pen of arm 'drawing_arm_2022' would be|outside its"),
+    (list, ("--arm", "drawing_arm_2022"), "for arm 'drawing_arm_2022'|outside its"),
     (list, ("--arm", "six_joint"), "moves the joints|does not say how joint"),
     (list, ("--from-stroke", "3"), "there is no stroke 3; the drawing has 0 to 2"),
     (list, ("--resume",), "there is nothing to resume"),
