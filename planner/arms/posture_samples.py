@@ -25,6 +25,9 @@ _NEAR_LIMIT = 3.0
 _CURVED = 1.1
 """Allowance for the curvature of a lift."""
 
+_EDGE_STEP_MM = 0.05
+"""How closely the edge of what is usable is found."""
+
 _DRAWN = 20_000
 _SAMPLES = 120
 _FEW = 25
@@ -140,21 +143,27 @@ def _add_usable(kinematics: Kinematics, pools: list[FloatArray], rays: IntArray,
 
 def stretched_to_edges(kinematics: Kinematics, radii: FloatArray, postures: FloatArray
                         ) -> tuple[FloatArray, FloatArray]:
-    """The course with its two ends moved out to where postures stop being usable."""
+    """The course carried on from its two ends to where postures stop being usable, with all that it passes on the way:
+    what lies between its postures has to be near them."""
+    inner, first = _walk(kinematics, float(radii[0]), postures[0], -COARSE_STEP_MM / 2)
+    outer, last = _walk(kinematics, float(radii[-1]), postures[-1], COARSE_STEP_MM / 2)
+    return np.concatenate((inner[::-1], radii, outer)), np.concatenate((first[::-1], postures, last))
 
-    def furthest(radius: float, posture: FloatArray, step: float, bound: float) -> tuple[float, FloatArray]:
-        while abs(step) > 0.05:
-            further = min(max(radius + step, bound), np.inf) if step < 0 else radius + step
-            if further == radius:
-                break
-            found, exact = project(kinematics, posture[None], on_ray(np.array([further])))
-            if exact[0] and usable_postures(kinematics, found)[0]:
-                radius, posture = further, found[0]
-            else:
-                step /= 2
-        return radius, posture
 
-    inner, first = furthest(float(radii[0]), postures[0], -COARSE_STEP_MM / 2,
-                            kinematics.arm.workspace.inner_radius_mm)
-    outer, last = furthest(float(radii[-1]), postures[-1], COARSE_STEP_MM / 2, 0.0)
-    return (np.concatenate(([inner], radii, [outer])), np.concatenate((first[None], postures, last[None])))
+def _walk(kinematics: Kinematics, radius: float, posture: FloatArray, step: float) -> tuple[FloatArray, FloatArray]:
+    """Radii (n,) and postures (n, n_free) from one posture on, not itself, as far as they stay usable; steps in mm,
+    inwards where negative, become smaller towards the edge."""
+    least = kinematics.arm.workspace.inner_radius_mm
+    radii, postures = [], [posture]
+    while abs(step) > _EDGE_STEP_MM:
+        further = max(radius + step, least)
+        if further == radius:
+            break
+        found, exact = project(kinematics, postures[-1][None], on_ray(np.array([further])))
+        if exact[0] and usable_postures(kinematics, found)[0]:
+            radius = further
+            radii.append(radius)
+            postures.append(found[0])
+        else:
+            step /= 2
+    return np.array(radii), np.array(postures[1:]).reshape(-1, kinematics.n_free)
