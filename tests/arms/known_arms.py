@@ -6,7 +6,7 @@ The figures are for testing: limits are rounded, accelerations and jerks are gue
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import radians
+from math import degrees, radians
 
 from planner.arms.arm import Arm, Joint, JointKind, Pen, PenHold, Workspace
 
@@ -71,3 +71,31 @@ def scaled(arm: Arm, factor: float) -> Arm:
                         min_tip_speed_mm_s=min(factor, 1.0) * arm.workspace.min_tip_speed_mm_s)
     return replace(arm, name=f"{arm.name}_{factor:.2f}".replace(".", "_"), joints=tuple(map(longer, arm.joints)),
                    workspace=workspace, park=None)
+
+
+def file_text(arm: Arm) -> str:
+    """The arm as an arm file says it, without servos."""
+    name = [joint.name for joint in arm.joints]
+    lines = [f'name = "{arm.name}"', f'source = "{arm.source}"']
+    if arm.closed_form is not None:
+        lines.append(f'closed_form = "{arm.closed_form}"')
+    lines += ["[pen]", f'hold = "{arm.pen.hold}"', f"tool_axis = {list(arm.pen.tool_axis)}",
+              f"lift_mm = {arm.pen.lift_mm}", f"clearance_mm = {arm.pen.clearance_mm}",
+              "[workspace]", f"inner_radius_mm = {arm.workspace.inner_radius_mm}",
+              f"min_tip_speed_mm_s = {arm.workspace.min_tip_speed_mm_s}"]
+    for joint in arm.joints:
+        unit, per = joint.file_unit, joint.per_file_unit
+        lines += ["[[joints]]", f'name = "{joint.name}"', f'kind = "{joint.kind}"',
+                  f"theta_deg = {degrees(joint.theta_rad)}", f"d_mm = {joint.d_mm}", f"a_mm = {joint.a_mm}",
+                  f"alpha_deg = {degrees(joint.alpha_rad)}",
+                  f"min_{unit} = {joint.minimum / per}", f"max_{unit} = {joint.maximum / per}",
+                  f"max_velocity_{unit}_s = {joint.max_velocity / per}",
+                  f"max_acceleration_{unit}_s2 = {joint.max_acceleration / per}",
+                  f"max_jerk_{unit}_s3 = {joint.max_jerk / per}"]
+        if joint.thickness_mm is not None:
+            lines.append(f"thickness_mm = {joint.thickness_mm}")
+    for coupling in arm.couplings:
+        terms = ", ".join(f"{name[other]} = {value}" for other, value in coupling.coefficients)
+        lines += ["[[coupling]]", f'joint = "{name[coupling.joint]}"',
+                  f"constant_deg = {degrees(coupling.constant_rad)}", f"coefficients = {{ {terms} }}"]
+    return "\n".join(lines) + "\n"

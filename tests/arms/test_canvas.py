@@ -19,7 +19,7 @@ from planner.settings import CanvasKind
 from tests.arms.chains import load_once, tips_by_product, variant
 
 R_MAX_MM, R_MIN_MM = 150.0, 33.0
-RADII = st.tuples(st.floats(20, 100), st.floats(1.5, 6)).map(lambda pair: (pair[0] * pair[1], pair[0]))
+RADII = st.tuples(st.floats(20, 100), st.floats(2.01, 6)).map(lambda pair: (pair[0] * pair[1], pair[0]))
 
 
 def area_mm2(canvas: Canvas) -> float:
