@@ -34,7 +34,8 @@ class Guesses:
     def turned(self, target_mm: FloatArray, posture: FloatArray) -> FloatArray:
         """(n_free,) the posture with the first joint turned, within its limits, so that the pen is on the side of the
         target (3,); as it is where the first joint does not turn."""
-        return self._turned(target_mm, posture[None], self._kinematics.tip_mm(posture[None]))[0]
+        turned: FloatArray = self._turned(target_mm, posture[None], self._kinematics.tip_mm(posture[None]))[0]
+        return turned
 
     def near(self, target_mm: FloatArray) -> list[FloatArray]:
         """Postures (n_free,) within the limits that come near the target (3,) with the pen held as the arm holds it,

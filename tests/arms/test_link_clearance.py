@@ -13,7 +13,7 @@ from planner.arms.arm import Arm
 from planner.arms.kinematics import kinematics_of
 from planner.arms.link_clearance import KEPT_MM, LinkClearance, segment_distance
 from planner.arms.posture_field import posture_field
-from planner.arms.posture_samples import LINK_ROOM_MM
+from planner.arms.posture_tests import LINK_ROOM_MM
 from planner.arrays import FloatArray
 from planner.checking.chain import chain_poses
 from planner.checking.links import Bars
