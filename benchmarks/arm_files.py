@@ -1,4 +1,4 @@
-"""A soak: thousands of damaged arm files, each described and planned for, in a process with little time and memory.
+"""A soak: thousands of damaged arm files, each described and planned for, in a process of its own.
 
     python benchmarks/arm_files.py [COUNT] [SEED]
 
@@ -62,7 +62,6 @@ def damaged(text: str, chance: random.Random) -> str:
 def outcome(command: list[str], folder: Path) -> tuple[int, str]:
     """Exit code and last line on standard error; 124 where time runs out."""
     def bounded() -> None:
-        resource.setrlimit(resource.RLIMIT_AS, (4 * MOST_BYTES, 4 * MOST_BYTES))  # addresses, not memory in use
         resource.setrlimit(resource.RLIMIT_CPU, (int(LONGEST_S), int(LONGEST_S) + 1))
 
     ended = subprocess.run([sys.executable, "-m", "planner.cli", *command], cwd=folder, capture_output=True, text=True,
