@@ -131,5 +131,5 @@ def test_the_field_of_a_thick_arm_keeps_its_links_apart() -> None:
 
 def test_an_arm_too_thick_to_draw_is_told_so() -> None:
     arm = thick(load_once("three_joint"), q1=119.0, q2=119.0, q3=119.0)
-    with pytest.raises(PlanError, match="bring links too close to each other.*check thickness_mm"):
+    with pytest.raises(PlanError, match=r"bring links too close to each other.*check thickness_mm"):
         posture_field(arm)
