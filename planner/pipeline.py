@@ -302,6 +302,9 @@ def _verify(trajectory: Trajectory, arm: Arm) -> None:
     slowing = max(  # blocks overlap by the three samples that a third difference looks back
         limits.slowing_of(arm.from_file_units(trajectory.positions[begin:begin + _BLOCK_SAMPLES + 3]), period_s)
         for begin in range(0, trajectory.n_samples, _BLOCK_SAMPLES))
+    if not np.isfinite(trajectory.positions).all():
+        raise PlanError("the trajectory has positions that are no finite numbers: a defect of the planner, please"
+                        " report it with the drawing")
     if slowing > 1 + 1e-6:
         raise PlanError(f"the timing exceeds a joint limit by {100 * (slowing - 1):.3f} % of speed:"
                         " a defect of the planner, please report it with the drawing")
