@@ -191,8 +191,10 @@ def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: 
     if not timed:
         raise PlanError("nothing of the drawing can be drawn within the joint limits")
     unsettled = sum(not stroke.settled for stroke in timed)
+    loose = sum(not stroke.held for stroke in timed)
     counted = [(lost, f"left out whole, as method {settings.method} cannot draw them"),
-               (unsettled, "timed by the fallback, slower than the least time")]
+               (unsettled, "timed by the fallback, slower than the least time"),
+               (loose, "off the drawing by more than the tolerance between samples, however slow; try a higher --rate")]
     return timed, [f"{what}: {count} strokes" for count, what in counted if count]
 
 
@@ -235,7 +237,8 @@ def _end_that_collides(index: int, hop: Hop, n_strokes: int) -> int:
 def _hops(crew: Crew, kit: Kit, timed: Sequence[TimedStroke], lift_mm: float, report: Report) -> list[Hop]:
     """The pen-up moves before, between and after the strokes."""
     arm, settings = kit.arm, kit.settings
-    rules = HopRules(arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz)
+    rules = HopRules(arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz,
+                     settings.tolerance_mm)
     leave = [None, *(stroke.last for stroke in timed)]
     meet = [*(stroke.first for stroke in timed), None]
     hops: list[Hop] = []

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arrays import FloatArray, IntArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.ragged import starts_of, within
 from planner.spline import evaluate, evaluate_at, first_controls, halved
 
@@ -58,9 +58,17 @@ class PenPaths:
         """(total cells, n_fractions, 2) points, or derivatives by sigma, at fractions of every cell."""
         return evaluate(self.controls_mm, first_controls(self.n_cells, DEGREE), fractions, DEGREE, derivative)
 
+    def at(self, cells: IntArray, fractions: FloatArray) -> FloatArray:
+        """(n, 2) points at one fraction in each of the named cells (counted over all paths)."""
+        return evaluate_at(self.controls_mm, first_controls(self.n_cells, DEGREE)[cells], fractions, DEGREE)
+
     def halved(self) -> PenPaths:
         """The same paths with every cell cut in two, sigma counting the new cells."""
         return PenPaths(2 * self.n_cells, halved(self.controls_mm, self.n_cells, DEGREE))
+
+    def subset(self, chosen: BoolArray) -> PenPaths:
+        """Only the paths of the mask (n_paths,)."""
+        return PenPaths(self.n_cells[chosen], self.controls_mm[np.repeat(chosen, self.n_cells + DEGREE)])
 
 
 def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPaths:

@@ -19,6 +19,7 @@ from planner.arms.link_clearance import Collision
 from planner.arms.projection import project
 from planner.arms.quickest_lift import quickest_lifts
 from planner.arrays import BoolArray, FloatArray
+from planner.timing.between_samples import hop_excess
 from planner.timing.leap_choice import (
     RESTING_SHARE,
     Slopes,
@@ -37,26 +38,31 @@ _FINE = 4
 """Samples per period at which limits are checked."""
 _ABOUT = (0.95, 1.0, 1.05, 1.1)
 """Heights to aim at about the one that formulas find best, as they rank only."""
+_ROUNDS = 24
+_SLOWER, _MARGIN = 1.5, 0.98
+"""Most that a hop is slowed by at a time for the tip to keep to its way between samples, and a little beyond need."""
 _TURN_MARGIN = 0.999
 """Share of the braking that limits allow at a turn: at the very limit rounding decides whether Ruckig accepts."""
 
 
 @dataclass(frozen=True, slots=True)
 class HopRules:
-    """Heights in mm above the paper, the cap on the speed of lowering, and the sample rate."""
+    """Heights in mm above the paper, the cap on the speed of lowering, the sample rate, and how far the tip may be off
+    its way between samples."""
 
     clearance_mm: float
     lift_mm: float
     lowering_speed_mm_s: float
     rate_hz: float
+    tolerance_mm: float
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Hop:
     """Joint samples (n_samples, n_joints) of a hop, both ends included, and the durations of its phases in s.
 
-    exact: False where the pen could not be kept on its way, or a joint left its limits. collision: where links would
-    come too close.
+    exact: False where the pen could not be kept on its way, or a joint left its limits. held: whether the tip is within
+    the tolerance between samples. collision: where links would come too close.
     """
 
     joints: FloatArray
@@ -64,6 +70,7 @@ class Hop:
     travelling_s: float
     lowering_s: float
     exact: bool
+    held: bool = True
     collision: Collision | None = None
 
 
@@ -86,8 +93,26 @@ def plan_hops(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Se
     fine, _ = _sampled(kinematics, plans, _FINE * rules.rate_hz)
     plans = [plan.slowed(limits.slowing_of(joints, 1 / (_FINE * rules.rate_hz)) * 1.0005, rules)
              for plan, joints in zip(plans, fine, strict=True)]
-    joints, exact = _sampled(kinematics, plans, rules.rate_hz)
-    return [plan.hop(samples, bool(good.all())) for plan, samples, good in zip(plans, joints, exact, strict=True)]
+    return _held(kinematics, plans, rules)
+
+
+def _held(kinematics: Kinematics, plans: Sequence[_Timed], rules: HopRules) -> list[Hop]:
+    """The hops, each as slow as it has to be for the tip to keep to its way between samples."""
+    hops: dict[int, Hop] = {}
+    left = range(len(plans))
+    for _ in range(_ROUNDS):
+        joints, exact = _sampled(kinematics, plans, rules.rate_hz)
+        excess = hop_excess(kinematics, joints, [plan.shape.ends_mm for plan in plans],
+                            [plan.shape.touches for plan in plans], rules.clearance_mm, rules.tolerance_mm)
+        hops.update((index, plan.hop(samples, bool(good.all()), over <= 1.0)) for index, plan, samples, good, over
+                    in zip(left, plans, joints, exact, excess.tolist(), strict=True))
+        over = np.flatnonzero(excess > 1.0).tolist()
+        if not over:
+            break
+        left = [left[index] for index in over]
+        plans = [plans[index].slowed(plans[index].factor * min(np.sqrt(excess[index]), _SLOWER) / _MARGIN, rules)
+                 for index in over]
+    return [hops[index] for index in sorted(hops)]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -110,6 +135,16 @@ class _Shape:
         postures = np.stack((one.posture, other.posture))
         return _Shape(polar, postures, np.zeros_like(postures),
                       0.0 if leave else rules.lift_mm, 0.0 if meet else rules.lift_mm)
+
+    @property
+    def ends_mm(self) -> FloatArray:
+        """(2, 2) the places over which it begins and ends."""
+        return self.tip_mm(np.array([0.0, 1.0]), np.zeros(2))[:, :2]
+
+    @property
+    def touches(self) -> tuple[bool, bool]:
+        """Whether it begins, and ends, on the paper."""
+        return self.from_mm == 0, self.to_mm == 0
 
     def tip_mm(self, along: FloatArray, height_mm: FloatArray) -> FloatArray:
         """(n, 3) at fractions of the way and heights."""
@@ -170,10 +205,10 @@ class _Timed:
             height[clear] = self.above.at(times[clear] - self.over_begins_s)
         return self.over.at(times - self.over_begins_s), height
 
-    def hop(self, joints: FloatArray, exact: bool) -> Hop:
+    def hop(self, joints: FloatArray, exact: bool, held: bool) -> Hop:
         lifting = self.over_begins_s * self.factor
         lowering = (self.natural_s - self.clear_until_s) * self.factor
-        return Hop(joints, lifting, max(self.duration_s - lifting - lowering, 0.0), lowering, exact)
+        return Hop(joints, lifting, max(self.duration_s - lifting - lowering, 0.0), lowering, exact, held)
 
 
 def _joint_slopes(kinematics: Kinematics, shapes: Sequence[_Shape]) -> Slopes:

@@ -40,19 +40,25 @@ class StrokeMotions:
 
     def samples(self) -> list[FloatArray]:
         """(n_periods + 1, n_joints) positions of each stroke at its samples, both ends included."""
+        return np.split(self.paths.at(*self.places()), np.cumsum(self.n_periods + 1)[:-1])
+
+    def places(self, per_period: int = 1) -> tuple[IntArray, FloatArray]:
+        """Cells, and fractions of them, (n,) in which all strokes are at so many equal steps a period, both ends of
+        each included."""
         starts = starts_of(self.paths.n_cells)
-        counts = self.n_periods + 1
+        n_steps = per_period * self.n_periods
+        counts = n_steps + 1
         after = np.cumsum(self.cell_s)  # on one axis of time, stroke after stroke
         begins = after - self.cell_s
         begins_s, ends_s = begins[starts[:-1]], after[starts[1:] - 1]
         number = within(counts)
-        times = np.repeat(begins_s, counts) + number * np.repeat((ends_s - begins_s) / self.n_periods, counts)
+        times = np.repeat(begins_s, counts) + number * np.repeat((ends_s - begins_s) / n_steps, counts)
         cell = np.clip(np.searchsorted(begins, times, side="right") - 1,
                        np.repeat(starts[:-1], counts), np.repeat(starts[1:] - 1, counts))
         fraction = _fraction_after(self.rates[cell], times - begins[cell], self.cell_s[cell])
         fraction[number == 0] = 0.0
-        fraction[number == np.repeat(self.n_periods, counts)] = 1.0
-        return np.split(self.paths.at(cell, fraction), np.cumsum(counts)[:-1])
+        fraction[number == np.repeat(n_steps, counts)] = 1.0
+        return cell, fraction
 
     def sample(self, path: int) -> FloatArray:
         """(n_periods + 1, n_joints) the samples of one stroke."""
