@@ -106,10 +106,10 @@ def hop_excess(kinematics: Kinematics, joints: Sequence[FloatArray], touches_mm:
     for hop, (near, samples, places, touching) in enumerate(
             zip(np.split(tips, bounds), joints, touches_mm, is_touching, strict=True)):
         points = near.reshape(-1, 3)
-        low = points[points[:, 2] < clearance_mm - DRIFT_SHARE * tolerance_mm]
-        drift = np.min([np.hypot(*(low[:, :2] - place).T)
+        drift = np.min([np.hypot(*(points[:, :2] - place).T)
                         for place, touch in zip(places, touching, strict=True) if touch], axis=0)
-        depth = max(float(drift.max(initial=0.0)), -float(points[:, 2].min(initial=0.0)))
+        strays = np.minimum(drift, clearance_mm - points[:, 2])  # aside, it may be low only where it may be aside
+        depth = max(float(strays.max(initial=0.0)), -float(points[:, 2].min(initial=0.0)))
         beside = samples[[min(1, len(samples) - 1), max(len(samples) - 2, 0)]]
         heights = np.abs(kinematics.tip_mm(kinematics.free_of(beside))[:, 2])
         across = np.cbrt(_ACROSS * heights[list(touching)].max() / (ACROSS_SHARE * tolerance_mm)) ** 2

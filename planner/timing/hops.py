@@ -38,9 +38,10 @@ _FINE = 4
 """Samples per period at which limits are checked."""
 _ABOUT = (0.95, 1.0, 1.05, 1.1)
 """Heights to aim at about the one that formulas find best, as they rank only."""
-_ROUNDS = 24
 _SLOWER, _MARGIN = 1.5, 0.98
 """Most that a hop is slowed by at a time for the tip to keep to its way between samples, and a little beyond need."""
+_HELPED = 0.97
+"""Slowing has helped where the tip strays by less than this share of before."""
 _TURN_MARGIN = 0.999
 """Share of the braking that limits allow at a turn: at the very limit rounding decides whether Ruckig accepts."""
 
@@ -97,22 +98,22 @@ def plan_hops(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Se
 
 
 def _held(kinematics: Kinematics, plans: Sequence[_Timed], rules: HopRules) -> list[Hop]:
-    """The hops, each as slow as it has to be for the tip to keep to its way between samples."""
+    """The hops, each as slow as it has to be for the tip to keep to its way between samples. One that slowing does not
+    help, as where postures jump to another branch, stays as quick as it was before."""
     hops: dict[int, Hop] = {}
-    left = range(len(plans))
-    for _ in range(_ROUNDS):
+    left, before = np.arange(len(plans)), np.full(len(plans), np.inf)
+    while len(left):
         joints, exact = _sampled(kinematics, plans, rules.rate_hz)
         excess = hop_excess(kinematics, joints, [plan.shape.ends_mm for plan in plans],
                             [plan.shape.touches for plan in plans], rules.clearance_mm, rules.tolerance_mm)
-        hops.update((index, plan.hop(samples, bool(good.all()), over <= 1.0)) for index, plan, samples, good, over
-                    in zip(left, plans, joints, exact, excess.tolist(), strict=True))
-        over = np.flatnonzero(excess > 1.0).tolist()
-        if not over:
-            break
-        left = [left[index] for index in over]
+        helped = excess < _HELPED * before
+        hops.update((index, plan.hop(samples, bool(good.all()), over <= 1.0)) for index, plan, samples, good, over, kept
+                    in zip(left.tolist(), plans, joints, exact, excess.tolist(), helped.tolist(), strict=True) if kept)
+        over = np.flatnonzero(helped & (excess > 1.0))
         plans = [plans[index].slowed(plans[index].factor * min(np.sqrt(excess[index]), _SLOWER) / _MARGIN, rules)
-                 for index in over]
-    return [hops[index] for index in sorted(hops)]
+                 for index in over.tolist()]
+        left, before = left[over], excess[over]
+    return [hops[index] for index in range(len(hops))]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
