@@ -9,8 +9,8 @@ quickest way.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -24,19 +24,20 @@ from planner.timing.leap_choice import (
     RESTING_SHARE,
     Slopes,
     coordinate_limits,
-    fall_aim,
+    quickest_leaps,
     rest_of,
-    shares_and_aims,
     turning_acceleration,
 )
 from planner.timing.limits import Limits
-from planner.timing.ruckig_profile import RestToRest, between_states, rest_to_rest
+from planner.timing.ruckig_profile import NoSuchMove, RestToRest, between_states, rest_to_rest
 
 _PROBES = 9
 _HEIGHT_PROBES = 33
 _FINE = 4
 """Samples per period at which limits are checked."""
-_ABOUT = (0.95, 1.0, 1.05, 1.1)
+_TRIED = 5
+"""How many of the quickest leaps by formulas are made, for each hop."""
+_ABOUT = (0.95, 1.0, 1.05)
 """Heights to aim at about the one that formulas find best, as they rank only."""
 _SLOWER, _MARGIN = 1.5, 0.98
 """Most that a hop is slowed by at a time for the tip to keep to its way between samples, and a little beyond need."""
@@ -143,6 +144,11 @@ class _Shape:
         return self.tip_mm(np.array([0.0, 1.0]), np.zeros(2))[:, :2]
 
     @property
+    def is_still(self) -> bool:
+        """Whether it ends over the place where it begins."""
+        return float(np.abs(self.polar[1] - self.polar[0]).max()) < 1e-9
+
+    @property
     def touches(self) -> tuple[bool, bool]:
         """Whether it begins, and ends, on the paper."""
         return self.from_mm == 0, self.to_mm == 0
@@ -180,12 +186,11 @@ class _Timed:
     def duration_s(self) -> float:
         return self.natural_s * self.factor
 
-    def stays_between(self, rules: HopRules) -> bool:
-        """Whether the motion above the clearance never dips below it nor leaves the lift height."""
-        if self.above is None:
-            return True
+    def stays_between(self, rules: HopRules, handover_mm: float) -> bool:
+        """Whether the motion above the handover never dips below it nor leaves the lift height."""
+        assert self.above is not None
         heights = self.above.at(np.linspace(0.0, self.above.duration_s, _HEIGHT_PROBES))
-        return bool(heights.min() >= rules.clearance_mm - 1e-6 and heights.max() <= rules.lift_mm)
+        return bool(heights.min() >= handover_mm - 1e-6 and heights.max() <= rules.lift_mm)
 
     def slowed(self, needed: float, rules: HopRules) -> _Timed:
         """Slowed by what is needed, or sped up by what is left but for the cap on lowering, and on to whole sample
@@ -226,19 +231,27 @@ def _joint_slopes(kinematics: Kinematics, shapes: Sequence[_Shape]) -> Slopes:
 
 
 def _timed(shapes: Sequence[_Shape], slopes: Slopes, limits: Limits, rules: HopRules) -> list[_Timed]:
-    """The motions of every hop, within the limits as far as joints follow their slopes."""
-    shares, aims = shares_and_aims(slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s)
-    over = _rows(coordinate_limits(slopes.along, rest_of(slopes, limits, shares)))
-    up = _rows(coordinate_limits(slopes.lifting, limits))
-    down = _rows(coordinate_limits(slopes.lowering, limits))
-    plans = []
-    for shape, share, aim, of_over, of_up, of_down in zip(shapes, shares.tolist(), aims.tolist(), over, up, down,
-                                                          strict=True):
-        still = float(np.abs(shape.polar[1] - shape.polar[0]).max()) < 1e-9
-        way = rest_to_rest(0.0 if still else 1.0, *of_over)
-        heights = _Heights(of_up, (min(of_down[0], rules.lowering_speed_mm_s), *of_down[1:]), share)
-        plans.append(_leap(shape, way, heights, rules, aim))
-    return plans
+    """The quickest motions of every hop, within the limits as far as joints follow their slopes."""
+    up, down = (_rows(coordinate_limits(slope, limits)) for slope in (slopes.lifting, slopes.lowering))
+    heights = [_Heights(of_up, (min(of_down[0], rules.lowering_speed_mm_s), *of_down[1:]))
+               for of_up, of_down in zip(up, down, strict=True)]
+    rest = _ways(shapes, slopes, limits, np.full(len(shapes), RESTING_SHARE))
+    best = [_resting_leap(*each, rules) for each in zip(shapes, rest, heights, strict=True)]
+    leaps = quickest_leaps(slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s)
+    for column in range(min(_TRIED, leaps.seconds.shape[1])):
+        ways = _ways(shapes, slopes, limits, leaps.share[:, column])
+        aims = map(_Aims, *(getattr(leaps, field.name)[:, column].tolist() for field in fields(_Aims)))
+        for hop, (shape, way, bounds, aim) in enumerate(zip(shapes, ways, heights, aims, strict=True)):
+            if shape.touches == (True, True) and aim.seconds < best[hop].natural_s:
+                best[hop] = min((best[hop], *_turning_leaps(shape, way, bounds, rules, aim)),
+                                key=lambda leap: leap.natural_s)
+    return best
+
+
+def _ways(shapes: Sequence[_Shape], slopes: Slopes, limits: Limits, share: FloatArray) -> list[RestToRest]:
+    """The move over the paper of each hop, with the limits that a height with that share (n_hops,) of them leaves."""
+    bounds = _rows(coordinate_limits(slopes.along, rest_of(slopes, limits, share)))
+    return [rest_to_rest(0.0 if shape.is_still else 1.0, *each) for shape, each in zip(shapes, bounds, strict=True)]
 
 
 _Bounds = tuple[float, float, float]
@@ -247,42 +260,54 @@ _Bounds = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class _Heights:
-    """Bounds of the height near both ends, and the share of them that is left for it above the clearance."""
+    """Bounds of the height near both ends."""
 
     up: _Bounds
     down: _Bounds
+
+
+@dataclass(frozen=True, slots=True)
+class _Aims:
+    """What a leap is to be like: a row of `Leaps`."""
+
     share: float
+    handover_mm: float
+    rise_mm: float
+    fall_mm: float
+    fall_mm_s: float
+    seconds: float
 
 
 def _rows(limits: Limits) -> list[_Bounds]:
     return list(zip(limits.velocity.tolist(), limits.acceleration.tolist(), limits.jerk.tolist(), strict=True))
 
 
-def _leap(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules, aim_mm: float) -> _Timed:
-    """The leap that aims at about that height and turns without a halt; the one that rests at the lift height where an
-    end is in the air, or where the others are too high or too low."""
-    turning = []
-    if not (shape.from_mm or shape.to_mm) and np.isfinite(aim_mm):
-        turning = [_turning_leap(shape, over, heights, rules, aim_mm * about) for about in _ABOUT]
-    return min((leap for leap in turning if leap.stays_between(rules)), key=lambda leap: leap.natural_s,
-               default=_resting_leap(shape, over, heights, rules))
+def _turning_leaps(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules, aims: _Aims
+                   ) -> Iterator[_Timed]:
+    """The leaps that aim at about that height and turn without a halt, those that there are."""
+    for about in _ABOUT:
+        try:
+            leap = _turning_leap(shape, over, heights, replace(aims, rise_mm=about * aims.rise_mm))
+        except NoSuchMove:
+            continue
+        if leap.stays_between(rules, aims.handover_mm):
+            yield leap
 
 
-def _turning_leap(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules, aim_mm: float) -> _Timed:
-    """The leap whose rise aims at a height."""
-    up, down = _rise(aim_mm, heights.up), _rise(fall_aim(rules.clearance_mm), heights.down)
-    clear = [rise.time_at(rules.clearance_mm) for rise in (up, down)]
+def _turning_leap(shape: _Shape, over: RestToRest, heights: _Heights, aims: _Aims) -> _Timed:
+    """The leap whose rise and fall aim at these heights. Errors: NoSuchMove."""
+    slow = (min(heights.down[0], aims.fall_mm_s), *heights.down[1:])
+    up, down = _rise(aims.rise_mm, heights.up), _rise(aims.fall_mm, slow)
+    clear = [rise.time_at(aims.handover_mm) for rise in (up, down)]
     (up_speed, up_braking), (down_speed, down_braking) = (
         rise.state_at(time) for rise, time in zip((up, down), clear, strict=True))
-    above = between_states(rules.clearance_mm, (up_speed, up_braking), (-down_speed, down_braking),
-                           -heights.down[0] / _TURN_MARGIN, _above(heights), over.duration_s)
+    # Above the handover any acceleration will do: that of its ends is within the limits, and jerk keeps others small.
+    push = max(min(heights.up[1], heights.down[1]), abs(up_braking), abs(down_braking))
+    above = between_states(aims.handover_mm, (up_speed, up_braking), (-down_speed, down_braking),
+                           -heights.down[0] / _TURN_MARGIN,
+                           (heights.up[0], push, aims.share * min(heights.up[2], heights.down[2])), over.duration_s)
     until = clear[0] + above.duration_s
     return _Timed(shape, up, over, down, above, clear[0], until, until + clear[1])
-
-
-def _above(heights: _Heights) -> _Bounds:
-    """Bounds of the height above the clearance: its share of the jerk, and any acceleration, which jerk keeps small."""
-    return (heights.up[0], min(heights.up[1], heights.down[1]), heights.share * min(heights.up[2], heights.down[2]))
 
 
 def _rise(top_mm: float, bounds: _Bounds) -> RestToRest:

@@ -37,7 +37,7 @@ def touches(arm: Arm, tips_mm: FloatArray) -> list[Touch]:
 
 
 def rules(rate_hz: float = 100.0, lift_mm: float = LIFT_MM, lowering_mm_s: float = 30.0) -> HopRules:
-    return HopRules(CLEARANCE_MM, lift_mm, lowering_mm_s, rate_hz)
+    return HopRules(CLEARANCE_MM, lift_mm, lowering_mm_s, rate_hz, 0.05)
 
 
 def hop(arm: Arm, leave: Touch | None, meet: Touch | None, how: HopRules) -> Hop:
