@@ -35,8 +35,10 @@ _PROBES = 9
 _HEIGHT_PROBES = 33
 _FINE = 4
 """Samples per period at which limits are checked."""
-_TRIED = 5
-"""How many of the quickest leaps by formulas are made, for each hop."""
+_TRIED = 40
+"""How many of the quickest leaps by formulas are made at most, for each hop."""
+_WORTH = 0.98
+"""Share of the time of the best so far that a leap has to be below, by formulas, to be made."""
 _ABOUT = (0.95, 1.0, 1.05)
 """Heights to aim at about the one that formulas find best, as they rank only."""
 _SLOWER, _MARGIN = 1.5, 0.98
@@ -90,7 +92,19 @@ def plan_hops(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Se
     ends, at the lift height above the other, as at the two ends of a drawing."""
     shapes = [_Shape.of(rules, one, other) for one, other in zip(leave, meet, strict=True)]
     lifts = quickest_lifts(kinematics, limits.jerk, np.concatenate([shape.postures for shape in shapes]))
-    shapes = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
+    lifted = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
+    hops = _along(kinematics, limits, rules, lifted)
+    # The quickest way up may lead a joint out of its range where the way with the least motion does not.
+    out = [index for index, hop in enumerate(hops) if not hop.exact]
+    for index, hop in zip(out, _along(kinematics, limits, rules, [shapes[index] for index in out]), strict=True):
+        hops[index] = hop if hop.exact else hops[index]
+    return hops
+
+
+def _along(kinematics: Kinematics, limits: Limits, rules: HopRules, shapes: Sequence[_Shape]) -> list[Hop]:
+    """Hops of these shapes, as quick as they may be."""
+    if not shapes:
+        return []
     plans = _timed(shapes, _joint_slopes(kinematics, shapes), limits, rules)
     fine, _ = _sampled(kinematics, plans, _FINE * rules.rate_hz)
     plans = [plan.slowed(limits.slowing_of(joints, 1 / (_FINE * rules.rate_hz)) * 1.0005, rules)
@@ -238,13 +252,18 @@ def _timed(shapes: Sequence[_Shape], slopes: Slopes, limits: Limits, rules: HopR
     rest = _ways(shapes, slopes, limits, np.full(len(shapes), RESTING_SHARE))
     best = [_resting_leap(*each, rules) for each in zip(shapes, rest, heights, strict=True)]
     leaps = quickest_leaps(slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s)
+    can_turn = np.array([shape.touches == (True, True) for shape in shapes])
     for column in range(min(_TRIED, leaps.seconds.shape[1])):
-        ways = _ways(shapes, slopes, limits, leaps.share[:, column])
-        aims = map(_Aims, *(getattr(leaps, field.name)[:, column].tolist() for field in fields(_Aims)))
-        for hop, (shape, way, bounds, aim) in enumerate(zip(shapes, ways, heights, aims, strict=True)):
-            if shape.touches == (True, True) and aim.seconds < best[hop].natural_s:
-                best[hop] = min((best[hop], *_turning_leaps(shape, way, bounds, rules, aim)),
-                                key=lambda leap: leap.natural_s)
+        so_far_s = np.array([leap.natural_s for leap in best])
+        hops = np.flatnonzero(can_turn & (leaps.seconds[:, column] < _WORTH * so_far_s))
+        if not len(hops):  # what comes later takes longer still
+            break
+        chosen = [shapes[hop] for hop in hops.tolist()]
+        ways = _ways(chosen, slopes.subset(hops), limits, leaps.share[hops, column])
+        aims = map(_Aims, *(getattr(leaps, field.name)[hops, column].tolist() for field in fields(_Aims)))
+        for hop, shape, way, aim in zip(hops.tolist(), chosen, ways, aims, strict=True):
+            best[hop] = min((best[hop], *_turning_leaps(shape, way, heights[hop], rules, aim)),
+                            key=lambda leap: leap.natural_s)
     return best
 
 
@@ -275,7 +294,6 @@ class _Aims:
     rise_mm: float
     fall_mm: float
     fall_mm_s: float
-    seconds: float
 
 
 def _rows(limits: Limits) -> list[_Bounds]:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from planner.arrays import FloatArray
+from planner.arrays import FloatArray, IntArray
 from planner.timing.limits import Limits
 
 _AIMS = 1.02, 1.94
@@ -44,6 +44,9 @@ class Slopes:
     lifting: FloatArray
     lowering: FloatArray
     along: FloatArray
+
+    def subset(self, hops: IntArray) -> Slopes:
+        return Slopes(self.lifting[hops], self.lowering[hops], self.along[hops])
 
 
 def coordinate_limits(slope: FloatArray, limits: Limits) -> Limits:
