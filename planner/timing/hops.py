@@ -201,8 +201,11 @@ class _Timed:
         return self.natural_s * self.factor
 
     def stays_between(self, rules: HopRules, handover_mm: float) -> bool:
-        """Whether the motion above the handover never dips below it nor leaves the lift height."""
+        """Whether the motion above the handover never dips below it nor leaves the lift height, and lasts for a sample.
+        """
         assert self.above is not None
+        if self.above.duration_s * rules.rate_hz < 1.0:
+            return False
         heights = self.above.at(np.linspace(0.0, self.above.duration_s, _HEIGHT_PROBES))
         return bool(heights.min() >= handover_mm - 1e-6 and heights.max() <= rules.lift_mm)
 
