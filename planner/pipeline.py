@@ -44,6 +44,7 @@ from planner.portions import (
 from planner.settings import Method, PlanSettings
 from planner.summary import PhaseTimes, PlanSummary
 from planner.timing.hops import Hop, HopRules
+from planner.timing.length_bound import require_bounded
 from planner.timing.limits import Limits
 from planner.trajectory import TRAVELLING, Trajectory
 from planner.workers import ALONE, Crew, Workers, crew_of
@@ -83,6 +84,7 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
         strokes, warnings = _strokes(drawing, svg_to_arm, arm, settings)
         report("ordering strokes", 0, 1)
         strokes = _ordered(strokes, arm, settings, lift_mm)
+        _require_bounded(strokes, arm, settings, lift_mm)
         timed, notes = _timed_strokes(crew, kit, strokes, report)
         timed, hops, more_notes = _with_hops(crew, kit, timed, lift_mm, report)
     warnings += notes + more_notes
@@ -111,6 +113,18 @@ def _lift_mm(arm: Arm, settings: PlanSettings) -> float:
 def _ordered(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> list[FloatArray]:
     canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
     return order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
+
+
+def _require_bounded(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> None:
+    """Errors: UsageError where speeds and rests alone, whatever the arm, make a plan too long."""
+    drawn_mm = sum(float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in strokes)
+    lowered_mm = len(strokes) * arm.pen.clearance_mm + lift_mm
+    parts = [(drawn_mm / settings.speed_mm_s, "drawing", "choose a higher --speed"),
+             (lowered_mm / settings.lowering_speed_mm_s, "lowering the pen", "choose a higher --lowering-speed"),
+             (len(strokes) * settings.dwell_s, "resting before strokes", "choose a shorter --dwell")]
+    longest_s, what, advice = max(parts)
+    require_bounded(longest_s, settings.rate_hz, what, f"{advice}, or a lower --rate")
+    require_bounded(sum(seconds for seconds, _, _ in parts), settings.rate_hz, "the plan", f"{advice}, or a lower --rate")
 
 
 def _worth_hiring(workers: Workers, drawing_file: Path) -> Workers:

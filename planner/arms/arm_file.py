@@ -38,6 +38,18 @@ def _is_column_name(name: str) -> str:
 
 Name = Annotated[str, AfterValidator(_is_column_name)]
 
+_LEAST_LIMIT, _LARGEST_LIMIT = 0.1, 1e12
+"""Velocities, accelerations and jerks that some joint may have, in degrees or mm and seconds."""
+
+
+def _is_plausible(limit: float) -> float:
+    if not _LEAST_LIMIT <= limit <= _LARGEST_LIMIT:
+        raise ValueError(f"no joint has such a limit; wanted {_LEAST_LIMIT:g} to {_LARGEST_LIMIT:g}")
+    return limit
+
+
+Plausible = Annotated[Positive, AfterValidator(_is_plausible)]
+
 class _JointBase(Section):
     name: Name
     theta_deg: Number = 0.0
@@ -63,9 +75,9 @@ class _RevoluteSection(_JointBase):
     kind: Literal["revolute"]
     min_deg: Number
     max_deg: Number
-    max_velocity_deg_s: Positive
-    max_acceleration_deg_s2: Positive
-    max_jerk_deg_s3: Positive
+    max_velocity_deg_s: Plausible
+    max_acceleration_deg_s2: Plausible
+    max_jerk_deg_s3: Plausible
     servo: TurningServoSection | None = None
     bus: TurningBusSection | None = None
 
@@ -84,9 +96,9 @@ class _PrismaticSection(_JointBase):
     kind: Literal["prismatic"]
     min_mm: Number
     max_mm: Number
-    max_velocity_mm_s: Positive
-    max_acceleration_mm_s2: Positive
-    max_jerk_mm_s3: Positive
+    max_velocity_mm_s: Plausible
+    max_acceleration_mm_s2: Plausible
+    max_jerk_mm_s3: Plausible
     servo: SlidingServoSection | None = None
     bus: SlidingBusSection | None = None
 

@@ -28,6 +28,7 @@ from planner.timing.leap_choice import (
     rest_of,
     turning_acceleration,
 )
+from planner.timing.length_bound import MOST_SAMPLES_OF_A_HOP, require_bounded
 from planner.timing.limits import Limits
 from planner.timing.ruckig_profile import NoSuchMove, RestToRest, between_states, rest_to_rest
 
@@ -45,6 +46,8 @@ _SLOWER, _MARGIN = 1.5, 0.98
 """Most that a hop is slowed by at a time for the tip to keep to its way between samples, and a little beyond need."""
 _HELPED = 0.97
 """Slowing has helped where the tip strays by less than this share of before."""
+_SAMPLES_AT_ONCE = 100_000
+_TOO_SLOW = "choose a higher --lowering-speed, a lower --rate or --lift, or raise the limits of the arm's joints"
 _TURN_MARGIN = 0.999
 """Share of the braking that limits allow at a turn: at the very limit rounding decides whether Ruckig accepts."""
 
@@ -89,7 +92,8 @@ class Touch:
 def plan_hops(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Sequence[Touch | None],
               meet: Sequence[Touch | None]) -> list[Hop]:
     """Hops from each `leave` to the `meet` of the same index. Where one of the two is None the hop begins, or
-    ends, at the lift height above the other, as at the two ends of a drawing."""
+    ends, at the lift height above the other, as at the two ends of a drawing. Errors: UsageError where one takes too
+    long to be part of a plan."""
     shapes = [_Shape.of(rules, one, other) for one, other in zip(leave, meet, strict=True)]
     lifts = quickest_lifts(kinematics, limits.jerk, np.concatenate([shape.postures for shape in shapes]))
     lifted = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
@@ -106,6 +110,8 @@ def _along(kinematics: Kinematics, limits: Limits, rules: HopRules, shapes: Sequ
     if not shapes:
         return []
     plans = _timed(shapes, _joint_slopes(kinematics, shapes), limits, rules)
+    for plan in plans:
+        require_bounded(plan.duration_s, rules.rate_hz, "one pen-up move", _TOO_SLOW, MOST_SAMPLES_OF_A_HOP)
     fine, _ = _sampled(kinematics, plans, _FINE * rules.rate_hz)
     plans = [plan.slowed(limits.slowing_of(joints, 1 / (_FINE * rules.rate_hz)) * 1.0005, rules)
              for plan, joints in zip(plans, fine, strict=True)]
@@ -215,6 +221,7 @@ class _Timed:
         falls = (self.down.highest_speed, -self.above.lowest_velocity if self.above else 0.0)
         lowering = max(falls) / rules.lowering_speed_mm_s
         duration = self.natural_s * max(needed, lowering)
+        require_bounded(duration, rules.rate_hz, "one pen-up move", _TOO_SLOW, MOST_SAMPLES_OF_A_HOP)
         whole = max(np.ceil(duration * rules.rate_hz - 1e-9), 1.0) / rules.rate_hz
         return replace(self, factor=float(whole / self.natural_s))
 
@@ -350,7 +357,18 @@ def _resting_leap(shape: _Shape, over: RestToRest, heights: _Heights, rules: Hop
 
 def _sampled(kinematics: Kinematics, plans: Sequence[_Timed], rate_hz: float
              ) -> tuple[list[FloatArray], list[BoolArray]]:
-    """Joint samples of every hop, and where they are exact and within limits."""
+    """Joint samples of every hop, and where they are exact and within limits; some hops at a time."""
+    group = (np.cumsum([plan.duration_s for plan in plans]) * rate_hz) // _SAMPLES_AT_ONCE
+    joints, exact = [], []
+    for one in np.unique(group):
+        more, good = _sampled_together(kinematics, [plans[k] for k in np.flatnonzero(group == one).tolist()], rate_hz)
+        joints += more
+        exact += good
+    return joints, exact
+
+
+def _sampled_together(kinematics: Kinematics, plans: Sequence[_Timed], rate_hz: float
+                      ) -> tuple[list[FloatArray], list[BoolArray]]:
     references, tips, counts = [], [], []
     for plan in plans:
         count = round(plan.duration_s * rate_hz) if plan.factor != 1.0 else int(np.ceil(plan.duration_s * rate_hz))

@@ -10,6 +10,7 @@ from planner.arrays import FloatArray, IntArray
 from planner.inverse_kinematics.joint_path import DEGREE, JointPaths
 from planner.ragged import starts_of, within
 from planner.spline import evaluate, first_controls
+from planner.timing.length_bound import SLOW_ARM, require_bounded
 from planner.timing.limits import Limits
 
 _CHECKS_PER_CELL = 20
@@ -68,12 +69,13 @@ class StrokeMotions:
 def motions(paths: JointPaths, rates: FloatArray, limits: Limits, rate_hz: float) -> StrokeMotions:
     """Lay timed paths on the sample grid: each is slowed by the little that makes it last whole periods, and by
     what any limit is exceeded between the cell ends (slowing by k divides velocity by k, acceleration by
-    k^2 and jerk by k^3)."""
+    k^2 and jerk by k^3). Errors: UsageError where that takes too long to be a plan."""
     n_cells = paths.n_cells
     slower = np.maximum.reduceat(_slowing_needed(paths, rates, limits), starts_of(n_cells)[:-1])
     slower = np.maximum(slower, 1.0)
     cell_s = _until(rates, np.ones(len(rates)))
     durations = np.add.reduceat(cell_s, starts_of(n_cells)[:-1])
+    require_bounded(float((durations * slower).sum()), rate_hz, "the drawing", SLOW_ARM)
     n_periods = np.maximum(np.ceil(durations * slower * rate_hz - 1e-9).astype(np.int64), 1)
     slower = np.repeat(n_periods / rate_hz / durations, n_cells)
     return StrokeMotions(paths, rate_hz, rates / slower[:, None] ** 2, cell_s * slower, n_periods)
