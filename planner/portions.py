@@ -24,6 +24,7 @@ from planner.inverse_kinematics.stroke_postures import (
     exact_postures,
     joint_paths,
     postures_at,
+    strays_mm,
 )
 from planner.placement.pen_path import PenPaths, smooth_paths
 from planner.placement.pieces import Piece, in_pieces
@@ -39,6 +40,8 @@ from planner.timing.timing_problem import FRACTIONS
 SMOOTH_SHARE, SAMPLE_SHARE, BULGE_SHARE = 0.5, 0.4, 0.04
 """Shares of the tolerance: rounded corners, straight lines between samples, and what the tip strays from these because
 it is the joints that move straight."""
+_SPLINE_SHARE = 0.04
+"""Share of the tolerance that the joints' splines may stray between their knots before there are more of them."""
 
 _PORTION_WORK = 4000.0
 _LEAST_WORK = 10.0
@@ -186,6 +189,9 @@ def _with_collisions(arm: Arm, hops: Sequence[Hop]) -> list[Hop]:
 def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedStroke | Obstacle]:
     paths = smooth_paths(strokes, SMOOTH_SHARE * settings.tolerance_mm)
     splines, obstacles = joint_paths(arm, settings.method, paths, settings.weights)
+    if not obstacles and strays_mm(arm, paths, splines).max() > _SPLINE_SHARE * settings.tolerance_mm:
+        paths = paths.halved()
+        splines, obstacles = joint_paths(arm, settings.method, paths, settings.weights)
     if obstacles:
         blocked = {obstacle.path: obstacle for obstacle in obstacles}
         open_ways = [index for index in range(len(strokes)) if index not in blocked]

@@ -19,12 +19,14 @@ from planner.ragged import starts_of, within
 from planner.timing.stroke_motion import StrokeMotions
 
 ASIDE_SHARE = 0.44
-"""Share of the tolerance that the tip may be off a stroke's smooth path between samples."""
+"""Share of the tolerance that the tip may be off a stroke's smooth path between samples, and that off it."""
 HEIGHT_SHARE, DRIFT_SHARE = 0.5, 0.5
 """Shares of the tolerance: height of the tip while it draws; drift, or depth below the paper, while it is lifted."""
 ACROSS_SHARE = 0.45
 """Share of the tolerance that a stroke may bend the way to and from it, and that way the stroke."""
 
+_WAY_PER_STEP = 6
+"""Points of the way itself to a step: fewer would cut the corners that samples are blamed for."""
 _PER_STEP = 4
 _FRACTIONS = np.arange(1, _PER_STEP) / _PER_STEP
 _ACROSS = 1 / (9 * np.sqrt(3))
@@ -67,24 +69,25 @@ def stroke_excess(kinematics: Kinematics, paths: PenPaths, motion: StrokeMotions
     samples: those of the motion. How far it strays grows with the square of the speed, and so does this figure.
     """
     tips, n_steps = tips_between(kinematics, samples)
-    cells, fractions = motion.places(_PER_STEP)
+    cells, fractions = motion.places(_WAY_PER_STEP)
     way = paths.at(cells, fractions)
     # The way from a step before to a step behind, held at the ends of each stroke.
-    last = np.repeat(_PER_STEP * n_steps, n_steps)
-    begin = np.repeat(starts_of(_PER_STEP * n_steps + 1)[:-1], n_steps)
-    offsets = np.arange(-_PER_STEP, 2 * _PER_STEP + 1)
+    last = np.repeat(_WAY_PER_STEP * n_steps, n_steps)
+    begin = np.repeat(starts_of(_WAY_PER_STEP * n_steps + 1)[:-1], n_steps)
+    offsets = np.arange(-_WAY_PER_STEP, 2 * _WAY_PER_STEP + 1)
     excess = np.empty(len(tips))
-    place = within(n_steps) * _PER_STEP
+    place = within(n_steps) * _WAY_PER_STEP
     for first in range(0, len(tips), _STEPS_AT_ONCE):
         part = slice(first, first + _STEPS_AT_ONCE)
-        near = begin[part, None] + np.clip(place[part, None] + offsets, 0, last[part, None])
-        aside = _to_polyline(tips[part, :, :2], way[near])
+        near = way[begin[part, None] + np.clip(place[part, None] + offsets, 0, last[part, None])]
+        own = near[:, _WAY_PER_STEP + 1:2 * _WAY_PER_STEP]
+        aside = np.maximum(_to_polyline(tips[part, :, :2], near), _to_polyline(own, near[:, ::_WAY_PER_STEP]))
         height = np.abs(tips[part, :, 2]).max(axis=1)
         excess[part] = np.maximum(aside / (ASIDE_SHARE * tolerance_mm), height / (HEIGHT_SHARE * tolerance_mm))
     # The first step and the last grow with the cube of the speed.
-    ends = starts_of(_PER_STEP * n_steps + 1)
-    into = np.hypot(*(way[ends[:-1] + _PER_STEP] - way[ends[:-1]]).T)
-    out = np.hypot(*(way[ends[1:] - 1] - way[ends[1:] - 1 - _PER_STEP]).T)
+    ends = starts_of(_WAY_PER_STEP * n_steps + 1)
+    into = np.hypot(*(way[ends[:-1] + _WAY_PER_STEP] - way[ends[:-1]]).T)
+    out = np.hypot(*(way[ends[1:] - 1] - way[ends[1:] - 1 - _WAY_PER_STEP]).T)
     steps = starts_of(n_steps)
     for step, length in ((steps[:-1], into), (steps[1:] - 1, out)):
         across = np.cbrt(_ACROSS * length / (ACROSS_SHARE * tolerance_mm)) ** 2
