@@ -28,8 +28,6 @@ from planner.errors import PlannerError
 from planner.pipeline import plan
 from planner.settings import Method, PlanSettings
 
-
-
 _SLOW_S = 10.0
 
 

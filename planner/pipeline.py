@@ -14,6 +14,7 @@ from planner.affine import compose, rotation
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arms.canvas import canvas_of
+from planner.arms.kinematics import kinematics_of
 from planner.arms.posture_field import PostureField, posture_sheets
 from planner.arms.travel_embedding import travel_embedding
 from planner.arrays import BoolArray, FloatArray
@@ -24,6 +25,7 @@ from planner.drawing.order import Metric, order_strokes
 from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
 from planner.inverse_kinematics.stroke_postures import Obstacle
+from planner.phases import phases_of
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
 from planner.placement.pieces import Piece
@@ -42,6 +44,7 @@ from planner.portions import (
     timed_strokes,
 )
 from planner.settings import Method, PlanSettings
+from planner.stroke_figures import stroke_figures
 from planner.summary import PhaseTimes, PlanSummary
 from planner.timing.hops import Hop, HopRules
 from planner.timing.length_bound import require_bounded
@@ -90,7 +93,7 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
     warnings += notes + more_notes
     trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, timed, hops)
     _verify(trajectory, arm)
-    return Plan(trajectory, _summary(trajectory, strokes, timed, hops, scale, size_mm, drawing, warnings), drawing)
+    return Plan(trajectory, _summary(trajectory, arm, timed, scale, size_mm, warnings), drawing)
 
 
 def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> tuple[list[FloatArray], list[str]]:
@@ -124,7 +127,8 @@ def _require_bounded(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSett
              (len(strokes) * settings.dwell_s, "resting before strokes", "choose a shorter --dwell")]
     longest_s, what, advice = max(parts)
     require_bounded(longest_s, settings.rate_hz, what, f"{advice}, or a lower --rate")
-    require_bounded(sum(seconds for seconds, _, _ in parts), settings.rate_hz, "the plan", f"{advice}, or a lower --rate")
+    whole_s = sum(seconds for seconds, _, _ in parts)
+    require_bounded(whole_s, settings.rate_hz, "the plan", f"{advice}, or a lower --rate")
 
 
 def _worth_hiring(workers: Workers, drawing_file: Path) -> Workers:
@@ -208,7 +212,7 @@ def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: 
     loose = sum(not stroke.held for stroke in timed)
     counted = [(lost, f"left out whole, as method {settings.method} cannot draw them"),
                (unsettled, "timed by the fallback, slower than the least time"),
-               (loose, "off the drawing by more than the tolerance between samples, however slow; try a higher --rate")]
+               (loose, "off the drawing by more than the tolerance, however slow; try a larger --tolerance")]
     return timed, [f"{what}: {count} strokes" for count, what in counted if count]
 
 
@@ -302,17 +306,13 @@ def _verify(trajectory: Trajectory, arm: Arm) -> None:
                         " a defect of the planner, please report it with the drawing")
 
 
-def _summary(trajectory: Trajectory, strokes: Sequence[FloatArray], timed: Sequence[TimedStroke], hops: Sequence[Hop],
-             scale: float, size_mm: tuple[float, float], drawing: Drawing, warnings: list[str]) -> PlanSummary:
-    period = 1 / trajectory.rate_hz
-    phases = PhaseTimes(
-        drawing_s=sum(len(stroke.joints) - 1 for stroke in timed) * period,
-        lowering_s=sum(hop.lowering_s for hop in hops), lifting_s=sum(hop.lifting_s for hop in hops),
-        travelling_s=sum(hop.travelling_s for hop in hops),
-        dwelling_s=sum(stroke.dwell_samples for stroke in timed) * period)
+def _summary(trajectory: Trajectory, arm: Arm, timed: Sequence[TimedStroke], scale: float,
+             size_mm: tuple[float, float], warnings: list[str]) -> PlanSummary:
+    tips_mm = kinematics_of(arm).tip_mm(kinematics_of(arm).free_of(arm.from_file_units(trajectory.positions)))
+    phases = PhaseTimes.of(phases_of(trajectory, tips_mm, arm.pen.clearance_mm), trajectory.rate_hz)
     return PlanSummary(
         n_strokes=len(timed), n_taps=sum(len(stroke.joints) == 1 for stroke in timed),
-        drawn_mm=float(sum(np.hypot(*np.diff(stroke, axis=0).T).sum() for stroke in strokes if len(stroke) > 1)),
+        drawn_mm=float(stroke_figures(trajectory, tips_mm).length_mm.sum()),
         travelled_mm=float(sum(np.hypot(*(after.first.tip_mm - before.last.tip_mm))
                                for before, after in pairwise(timed))),
         size_mm=size_mm, scale=scale, phases=phases, duration_s=trajectory.duration_s,

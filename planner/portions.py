@@ -26,7 +26,7 @@ from planner.inverse_kinematics.stroke_postures import (
     postures_at,
     strays_mm,
 )
-from planner.placement.pen_path import PenPaths, smooth_paths
+from planner.placement.pen_path import PenPaths, smoothed
 from planner.placement.pieces import Piece, in_pieces
 from planner.settings import Method, PlanSettings
 from planner.timing.branch_change import keeps_branch, plan_branch_change
@@ -187,7 +187,7 @@ def _with_collisions(arm: Arm, hops: Sequence[Hop]) -> list[Hop]:
 
 
 def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedStroke | Obstacle]:
-    paths = smooth_paths(strokes, SMOOTH_SHARE * settings.tolerance_mm)
+    paths, smooth = smoothed(strokes, SMOOTH_SHARE * settings.tolerance_mm)
     splines, obstacles = joint_paths(arm, settings.method, paths, settings.weights)
     if not obstacles and strays_mm(arm, paths, splines).max() > _SPLINE_SHARE * settings.tolerance_mm:
         paths = paths.halved()
@@ -206,10 +206,11 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
     dwell = round(settings.dwell_s * settings.rate_hz)
     collisions = collision_obstacles(arm, [motion.joints for motion in motions])
     timed: list[TimedStroke | Obstacle] = []
-    for index, (stroke, motion) in enumerate(zip(strokes, motions, strict=True)):
+    for index, (stroke, motion, is_smooth) in enumerate(zip(strokes, motions, smooth.tolist(), strict=True)):
         free = kinematics.free_of(motion.joints)
         timed.append(collisions.get(index) or TimedStroke(
-            motion.joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell, motion.settled, motion.held))
+            motion.joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell, motion.settled,
+            motion.held and is_smooth))
     return timed
 
 

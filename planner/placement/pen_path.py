@@ -72,7 +72,13 @@ class PenPaths:
 
 
 def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPaths:
-    """Smooth paths that stay within the tolerance of their polylines, and these of them.
+    """Smooth paths as `smoothed` makes them."""
+    return smoothed(polylines, tolerance_mm)[0]
+
+
+def smoothed(polylines: Sequence[FloatArray], tolerance_mm: float) -> tuple[PenPaths, BoolArray]:
+    """Smooth paths that stay within the tolerance of their polylines, and these of them; and which of them (n_paths,) do
+    so indeed: rounds of refinement come to an end.
 
     polylines: each (n >= 2, 2) in mm with distinct neighbours. Work is linear in the number of points.
     """
@@ -90,7 +96,9 @@ def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPat
         finer = used_mm[worst] * np.clip(share * tolerance_mm / cut_mm[worst], 0.25, most)
         anchors_mm = np.concatenate((anchors_mm, at_mm[worst]))
         spacings_mm = np.concatenate((spacings_mm, finer))
-    return paths
+    reached = np.ones(len(polylines), dtype=bool)
+    reached[np.searchsorted(line.begin_mm, at_mm[worst], side="right") - 1] = False
+    return paths, reached
 
 
 def expected_cells(polylines: Sequence[FloatArray], tolerance_mm: float) -> list[FloatArray]:

@@ -84,20 +84,22 @@ class Leaps:
 def quickest_leaps(slopes: Slopes, limits: Limits, clearance_mm: float, lift_mm: float, lowering_mm_s: float) -> Leaps:
     """The quickest leaps of each hop, one for each of some handovers and shares, the quickest first.
 
-    The heights, and the speeds below the cap at which the pen may come down, are the same whatever the clearance and the
-    cap, which only say where the lists end: what a stricter rule allows is tried under a laxer one, too.
+    The heights, and the speeds below the cap at which the pen may come down, are the same whatever the clearance and
+    the cap, which only say where the lists end: what a stricter rule allows is tried under a laxer one, too.
     """
-    speeds = _SPEEDS_MM_S[_SPEEDS_MM_S < lowering_mm_s * (1 - 1e-9)][:_N_SPEEDS]
-    higher = _HANDOVERS_MM[_HANDOVERS_MM > clearance_mm * (1 + 1e-9)][:_N_HANDOVERS]
+    speeds = _SPEEDS_MM_S[lowering_mm_s * (1 - 1e-9) > _SPEEDS_MM_S][:_N_SPEEDS]
+    higher = _HANDOVERS_MM[clearance_mm * (1 + 1e-9) < _HANDOVERS_MM][:_N_HANDOVERS]
     made = [_quickest_from(slopes, limits, height, lift_mm, np.concatenate(([lowering_mm_s], speeds)))
             for height in (clearance_mm, *higher.tolist()) if height < lift_mm]
-    columns = [np.concatenate([np.empty((len(slopes.along), 0)), *(getattr(leaps, field.name) for leaps in made)], axis=1)
+    none = np.empty((len(slopes.along), 0))
+    columns = [np.concatenate([none, *(getattr(leaps, field.name) for leaps in made)], axis=1)
                for field in fields(Leaps)]
     order = np.argsort(columns[-1], axis=1, kind="stable")
     return Leaps(*(np.take_along_axis(column, order, axis=1) for column in columns))
 
 
-def _quickest_from(slopes: Slopes, limits: Limits, handover_mm: float, lift_mm: float, speeds_mm_s: FloatArray) -> Leaps:
+def _quickest_from(slopes: Slopes, limits: Limits, handover_mm: float, lift_mm: float, speeds_mm_s: FloatArray
+                   ) -> Leaps:
     """The quickest leap for each share that hands over at that height. The fall passes it at any speed up to the first
     one: what the rise has in excess of the height that leads up to that is come down at this first one."""
     rises, falls = np.linspace(*_AIMS, _N_RISES) * handover_mm, np.linspace(*_AIMS, _N_FALLS) * handover_mm

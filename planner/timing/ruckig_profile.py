@@ -94,7 +94,8 @@ def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: fl
     """
     if distance <= 0.0:
         return RestToRest(0.0, (0.0, 0.0), ((0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)))
-    unit_s = max(math.cbrt(distance / jerk), _SCARCE * distance / velocity, math.sqrt(_SCARCE * distance / acceleration))
+    unit_s = max(math.cbrt(distance / jerk), _SCARCE * distance / velocity,
+                 math.sqrt(_SCARCE * distance / acceleration))
     speed, push = distance / unit_s, distance / unit_s ** 2
     request = ruckig.InputParameter(1)
     request.current_position, request.target_position = [0.0], [1.0]
