@@ -77,8 +77,8 @@ def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPat
 
 
 def smoothed(polylines: Sequence[FloatArray], tolerance_mm: float) -> tuple[PenPaths, BoolArray]:
-    """Smooth paths that stay within the tolerance of their polylines, and these of them; and which of them (n_paths,) do
-    so indeed: rounds of refinement come to an end.
+    """Smooth paths that stay within the tolerance of their polylines, and these of them; and which of them (n_paths,)
+    do so indeed: rounds of refinement come to an end.
 
     polylines: each (n >= 2, 2) in mm with distinct neighbours. Work is linear in the number of points.
     """
