@@ -16,6 +16,7 @@ import ruckig
 
 from planner.arrays import FloatArray
 
+_MIRRORED = 1e-9
 _AMPLE, _SCARCE = 10.0, 1e-3
 """Speeds and accelerations of a move over 1 at a jerk of 1: more than it can use, and so little that jerk counts for
 nothing."""
@@ -114,6 +115,8 @@ def between_states(position: float, start: tuple[float, float], end: tuple[float
     takes `least_s` at least. Errors: NoSuchMove, as where an end is not within the limits, or cannot be braked from, or
     led up to, without leaving them."""
     velocity, acceleration, jerk = limits
+    if math.isclose(start[0], -end[0], rel_tol=_MIRRORED) and math.isclose(start[1], end[1], rel_tol=_MIRRORED):
+        raise NoSuchMove("ends that mirror each other crash Ruckig")  # a segmentation fault of 0.19
     request = ruckig.InputParameter(1)
     request.current_position, request.target_position = [position], [position]
     request.current_velocity, request.target_velocity = [start[0]], [end[0]]

@@ -16,7 +16,7 @@ from planner.arms.posture_field import posture_field
 from planner.arrays import FloatArray
 from planner.timing.hops import HopRules, Touch, plan_hops
 from planner.timing.limits import Limits
-from planner.timing.ruckig_profile import rest_to_rest
+from planner.timing.ruckig_profile import NoSuchMove, between_states, rest_to_rest
 from tests.arms.chains import load_once
 from tests.timing.rig import share_of_limits
 
@@ -71,6 +71,12 @@ def test_one_limit_out_of_proportion_costs_candidates_alone(
     changed = getattr(limits, key.removeprefix("max_")).copy()
     changed[joint] = value
     assert_hops_within(arm, replace(limits, **{key.removeprefix("max_"): changed}), touches_of(name))
+
+
+def test_ends_that_mirror_each_other_are_refused_and_do_not_crash() -> None:
+    with pytest.raises(NoSuchMove):
+        between_states(2.0, (19.45455588507448, -4426.552177067475), (-19.45455588507448, -4426.552177067475), -200.0,
+                       (902.0, 11278.0, 90228.86105757494), 0.0)
 
 
 @settings(deadline=None, max_examples=100)
