@@ -21,7 +21,7 @@ _AIMS = 1.02, 1.94
 """Heights that the rise to the handover may aim at, in heights of the handover: the highest sample of a hop must still
 be above it, and the pen must brake already where it passes it."""
 _N_RISES, _N_FALLS = 10, 5
-_HANDOVERS_MM, _N_HANDOVERS = 2.0 ** np.arange(-10, 10, 0.5), 4
+_HANDOVERS_MM, _N_HANDOVERS = 2.0 ** np.arange(-10, 10, 0.5), 7
 _SPEEDS_MM_S, _N_SPEEDS = 30.0 * 2.0 ** np.arange(6, -12, -0.5), 3
 """Heights at which to hand over and speeds of lowering that are tried, and how many beside those that rules give."""
 RESTING_SHARE = 0.6

@@ -231,7 +231,7 @@ def test_laxer_rules_make_no_slower_hops(name: str) -> None:
     by_clearance = [_whole_s(arm, HopRules(clearance, LIFT_MM, 30.0, 100.0, 0.05))
                     for clearance in (2.0, 1.0, 0.7, 0.5, 0.35, 0.25, 0.1)]
     for times in (by_speed, by_clearance):
-        assert all(after <= before * 1.04 for before, after in pairwise(times)), times
+        assert all(after <= before * 1.1 for before, after in pairwise(times)), times
 
 
 @pytest.mark.parametrize("name", DRAWING_ARMS)
