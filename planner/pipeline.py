@@ -14,6 +14,7 @@ from planner.affine import compose, rotation
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arms.canvas import canvas_of
+from planner.arms.kinematics import kinematics_of
 from planner.arms.posture_field import PostureField, posture_sheets
 from planner.arms.travel_embedding import travel_embedding
 from planner.arrays import BoolArray, FloatArray
@@ -26,6 +27,7 @@ from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
 from planner.head import LeftOut, Placement
 from planner.inverse_kinematics.stroke_postures import Obstacle
+from planner.phases import phases_of
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
 from planner.placement.pieces import Piece
@@ -44,8 +46,10 @@ from planner.portions import (
     timed_strokes,
 )
 from planner.settings import Method, PlanSettings
+from planner.stroke_figures import stroke_figures
 from planner.summary import PhaseTimes, PlanSummary
 from planner.timing.hops import Hop, HopRules
+from planner.timing.length_bound import require_bounded
 from planner.timing.limits import Limits
 from planner.trajectory import TRAVELLING, Trajectory
 from planner.workers import ALONE, Crew, Workers, crew_of
@@ -85,13 +89,14 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
         strokes, left_out, warnings = _strokes(drawing, svg_to_arm, arm, settings)
         report("ordering strokes", 0, 1)
         strokes = _ordered(strokes, arm, settings, lift_mm)
+        _require_bounded(strokes, arm, settings, lift_mm)
         timed, strokes, lost, notes = _timed_strokes(crew, kit, strokes, report)
         timed, strokes, hops, more_lost, more_notes = _with_hops(crew, kit, timed, strokes, lift_mm, report)
     warnings += notes + more_notes
     left_out += lost + more_lost
     trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, placement, left_out, timed, hops)
     _verify(trajectory, arm)
-    return Plan(trajectory, _summary(trajectory, strokes, timed, hops, scale, size_mm, drawing, warnings), drawing)
+    return Plan(trajectory, _summary(trajectory, arm, timed, scale, size_mm, warnings), drawing)
 
 
 def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> tuple[list[FloatArray], list[str]]:
@@ -114,6 +119,19 @@ def _lift_mm(arm: Arm, settings: PlanSettings) -> float:
 def _ordered(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> list[FloatArray]:
     canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
     return order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
+
+
+def _require_bounded(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> None:
+    """Errors: UsageError where speeds and rests alone, whatever the arm, make a plan too long."""
+    drawn_mm = sum(float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in strokes)
+    lowered_mm = len(strokes) * arm.pen.clearance_mm + lift_mm
+    parts = [(drawn_mm / settings.speed_mm_s, "drawing", "choose a higher --speed"),
+             (lowered_mm / settings.lowering_speed_mm_s, "lowering the pen", "choose a higher --lowering-speed"),
+             (len(strokes) * settings.dwell_s, "resting before strokes", "choose a shorter --dwell")]
+    longest_s, what, advice = max(parts)
+    require_bounded(longest_s, settings.rate_hz, what, f"{advice}, or a lower --rate")
+    whole_s = sum(seconds for seconds, _, _ in parts)
+    require_bounded(whole_s, settings.rate_hz, "the plan", f"{advice}, or a lower --rate")
 
 
 def _worth_hiring(workers: Workers, drawing_file: Path) -> Workers:
@@ -212,8 +230,10 @@ def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: 
     if not timed:
         raise PlanError("nothing of the drawing can be drawn within the joint limits")
     unsettled = sum(not stroke.settled for stroke in timed)
+    loose = sum(not stroke.held for stroke in timed)
     counts = [(len(lost), f"left out whole, as method {settings.method} cannot draw them"),
-              (unsettled, "timed by the fallback, slower than the least time")]
+              (unsettled, "timed by the fallback, slower than the least time"),
+              (loose, "off the drawing by more than the tolerance, however slow; try a larger --tolerance")]
     return timed, kept, _drawn(lost), [f"{what}: {counted(count, 'stroke')}" for count, what in counts if count]
 
 
@@ -257,7 +277,8 @@ def _end_that_collides(index: int, hop: Hop, n_strokes: int) -> int:
 def _hops(crew: Crew, kit: Kit, timed: Sequence[TimedStroke], lift_mm: float, report: Report) -> list[Hop]:
     """The pen-up moves before, between and after the strokes."""
     arm, settings = kit.arm, kit.settings
-    rules = HopRules(arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz)
+    rules = HopRules(arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz,
+                     settings.tolerance_mm)
     leave = [None, *(stroke.last for stroke in timed)]
     meet = [*(stroke.first for stroke in timed), None]
     hops: list[Hop] = []
@@ -310,17 +331,13 @@ def _verify(trajectory: Trajectory, arm: Arm) -> None:
                         " a defect of the planner, please report it with the drawing")
 
 
-def _summary(trajectory: Trajectory, strokes: Sequence[FloatArray], timed: Sequence[TimedStroke], hops: Sequence[Hop],
-             scale: float, size_mm: tuple[float, float], drawing: Drawing, warnings: list[str]) -> PlanSummary:
-    period = 1 / trajectory.rate_hz
-    phases = PhaseTimes(
-        drawing_s=sum(len(stroke.joints) - 1 for stroke in timed) * period,
-        lowering_s=sum(hop.lowering_s for hop in hops), lifting_s=sum(hop.lifting_s for hop in hops),
-        travelling_s=sum(hop.travelling_s for hop in hops),
-        dwelling_s=sum(stroke.dwell_samples for stroke in timed) * period)
+def _summary(trajectory: Trajectory, arm: Arm, timed: Sequence[TimedStroke], scale: float,
+             size_mm: tuple[float, float], warnings: list[str]) -> PlanSummary:
+    tips_mm = kinematics_of(arm).tip_mm(kinematics_of(arm).free_of(arm.from_file_units(trajectory.positions)))
+    phases = PhaseTimes.of(phases_of(trajectory, tips_mm, arm.pen.clearance_mm), trajectory.rate_hz)
     return PlanSummary(
         n_strokes=len(timed), n_taps=sum(len(stroke.joints) == 1 for stroke in timed),
-        drawn_mm=_drawn(strokes).length_mm,
+        drawn_mm=float(stroke_figures(trajectory, tips_mm).length_mm.sum()),
         travelled_mm=float(sum(np.hypot(*(after.first.tip_mm - before.last.tip_mm))
                                for before, after in pairwise(timed))),
         size_mm=size_mm, scale=scale, phases=phases, duration_s=trajectory.duration_s,

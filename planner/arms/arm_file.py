@@ -43,6 +43,7 @@ _MOST_JOINTS = 16
 _MOST_BYTES = 1_000_000
 _MOST_FAULTS = 20
 
+
 class _JointBase(Section):
     name: Name
     theta_deg: Number = 0.0

@@ -32,7 +32,7 @@ kinds:
   speed      the pen's path with its speed as colour
   error      how far the pen is off the drawing, on the paper and along the way
   phase      the pen's speed along one stroke, under what the joints allow on that path
-  timeline   when the arm lowers, draws, lifts, travels and dwells, with totals
+  timeline   when the arm lowers, rests, draws, lifts and travels, with totals
   film       the arm as it draws, from above and from the side
   workspace  the reach of an arm, its canvases, and how freely and how surely the pen moves"""
 

@@ -1,4 +1,4 @@
-"""The timeline of a trajectory: when it lowers, dwells, draws, lifts and travels, and how long altogether."""
+"""The timeline of a trajectory: when it lowers, rests, draws, lifts and travels, and how long altogether."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from planner.arrays import FloatArray, IntArray
 from planner.counted import counted
+from planner.phases import Phase, phases_of, seconds_in
 from planner.plots.look import USUAL, Look
-from planner.plots.phases import Phase, phases_of, seconds_in
 from planner.plots.samples import min_max_envelope, spans_where, window_s
 from planner.plots.sheet import Sheet
 from planner.trajectory import Trajectory
@@ -58,7 +58,7 @@ def plot_timeline(trajectory: Trajectory, tip_mm: FloatArray, clearance_mm: floa
 
 def _colour(phase: Phase, look: Look) -> str:
     colours = look.colours
-    return {Phase.LOWERING: colours.lowering, Phase.DWELLING: colours.dwelling, Phase.DRAWING: colours.drawn,
+    return {Phase.LOWERING: colours.lowering, Phase.RESTING: colours.resting, Phase.DRAWING: colours.drawn,
             Phase.LIFTING: colours.lifting, Phase.TRAVELLING: colours.travel}[phase]
 
 
