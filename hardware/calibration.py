@@ -21,18 +21,27 @@ _ROUNDING = 1e-6
 _LEAP = 0.05
 """Of a servo's range: so far beyond it may lean unpowered against its stop, and be taken back at once."""
 
+_COUNT = 1.0
+"""Servos on a bus are told whole counts."""
+
 _Described = TypeVar("_Described", Servo, BusServo)
 
 
 @dataclass(frozen=True, slots=True)
 class _Curve:
-    """What one servo is told, by its own position: `points` ascend in position and are strictly monotone in value."""
+    """What one servo is told, by its own position: `points` ascend in position and are strictly monotone in value.
+
+    step, dead_band: in what it is told; backlash: rad or mm.
+    """
 
     joint: Joint
     direction: int
     points: FloatArray
     low: float
     high: float
+    step: float
+    dead_band: float
+    backlash: float
 
 
 class Calibration:
@@ -46,6 +55,21 @@ class Calibration:
     def ranges(self) -> FloatArray:
         """(n_joints, 2): least and most that each servo is ever told."""
         return np.array([(curve.low, curve.high) for curve in self._curves])
+
+    @property
+    def steps(self) -> FloatArray:
+        """(n_joints,) the least difference that each servo can be told, 0 where there is none."""
+        return np.array([curve.step for curve in self._curves])
+
+    @property
+    def dead_bands(self) -> FloatArray:
+        """(n_joints,) differences that each servo lets be, in what it is told."""
+        return np.array([curve.dead_band for curve in self._curves])
+
+    @property
+    def backlash(self) -> FloatArray:
+        """(n_joints,) rad or mm of play between each servo and its joint."""
+        return np.array([curve.backlash for curve in self._curves])
 
     def to_servos(self, positions: FloatArray) -> FloatArray:
         """Pulses or counts (..., n_joints), not rounded, of positions (..., n_joints) in rad or mm.
@@ -92,6 +116,16 @@ def count_calibration(arm: Arm) -> Calibration:
                        tuple(_count_curve(joint, servo) for joint, servo in zip(arm.joints, servos, strict=True)))
 
 
+def own_calibration(arm: Arm) -> Calibration:
+    """The arm's servos, told by pulses or on a bus, whichever its file describes more of.
+
+    Errors: ArmFileError naming the key that a joint lacks.
+    """
+    on_bus = sum(joint.bus is not None for joint in arm.joints)
+    by_pulses = sum(joint.servo is not None for joint in arm.joints)
+    return count_calibration(arm) if on_bus > by_pulses else pulse_calibration(arm)
+
+
 def _known(arm: Arm, joint: Joint, key: str, servo: _Described | None) -> _Described:
     if servo is None:
         keys = {"servo": f"pulse_at_zero_us = ..., us_per_{joint.file_unit} = ..., pulse_range_us = [..., ...]",
@@ -105,14 +139,15 @@ def _pulse_curve(joint: Joint, servo: Servo) -> _Curve:
     """A measured table is not trusted beyond its ends, so that the range is what range and table share."""
     points = np.array(servo.curve) + np.array([0.0, servo.trim_us])
     low, high = servo.pulse_range_us
-    return _Curve(joint, servo.direction, points, max(low, points[:, 1].min()), min(high, points[:, 1].max()))
+    return _Curve(joint, servo.direction, points, max(low, points[:, 1].min()), min(high, points[:, 1].max()),
+                  servo.resolution_us, servo.dead_band_us, servo.backlash)
 
 
 def _count_curve(joint: Joint, servo: BusServo) -> _Curve:
     low, high = servo.count_range
     positions = (np.array([low, high]) - servo.count_at_zero) / servo.counts_per_unit
     points = np.column_stack((positions, (low, high)))
-    return _Curve(joint, 1, points[np.argsort(positions)], low, high)
+    return _Curve(joint, 1, points[np.argsort(positions)], low, high, _COUNT, servo.dead_band_counts, servo.backlash)
 
 
 def _told(curve: _Curve, positions: FloatArray, unit: str) -> FloatArray:

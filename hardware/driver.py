@@ -18,6 +18,9 @@ class Driver(Protocol):
     """How long before its time a set point has to be handed over: 0 for controllers without a queue, which move at
     once. Where there is a queue, playing is paced by it, not by the host's clock."""
 
+    def open(self) -> None:
+        """Open the line, if it is not open yet, without a byte on it."""
+
     def connect(self, pose: FloatArray) -> None:
         """Open the line, attach the servos one after another at `pose` and stand there.
 
@@ -32,10 +35,11 @@ class Driver(Protocol):
         """
 
     def executed(self) -> int:
-        """How many set points sent so far are known to have been reached; all where the controller does not tell."""
+        """How many set points sent so far are known to have been reached: the controller has said so, or has answered
+        after it had the time to reach them. What a line has taken is not known to have been reached."""
 
     def flush(self) -> None:
-        """Return when everything sent has been reached."""
+        """Return when everything sent is known to have been reached. Errors: HardwareError where that is not heard."""
 
     def emergency_stop(self) -> None:
         """Stop moving now and hold. Never raises because the arm is stopped already."""

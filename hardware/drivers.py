@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 
-from hardware.calibration import Calibration, pulse_calibration
+from hardware.calibration import Calibration, own_calibration, pulse_calibration
 from hardware.clock import Clock
 from hardware.driver import Driver
 from hardware.gentle_move import come_from
@@ -18,6 +19,7 @@ from hardware.streaming.maestro import Maestro
 from hardware.streaming.ssc32 import Ssc32
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
+from planner.errors import ArmFileError
 
 SIMULATED = "sim"
 MUJOCO = "mujoco"
@@ -31,6 +33,8 @@ _STREAMING: dict[str, Callable[[Arm], Controller]] = {
     "feetech": feetech_bus,
     "dynamixel": dynamixel_bus,
 }
+TELL_WHERE_THEY_STAND = ("feetech", "dynamixel")
+"""Servos of these leap nowhere when they are attached."""
 
 DRIVERS = (*SIMULATORS, _NATIVE, *_STREAMING)
 
@@ -42,8 +46,11 @@ def calibration_of(name: str, arm: Arm) -> Calibration | None:
     """
     if name in _STREAMING:
         return _STREAMING[name](arm).calibration
-    undescribed = any(joint.servo is None for joint in arm.joints)
-    return None if name in SIMULATORS and undescribed else pulse_calibration(arm)
+    if name in SIMULATORS:
+        with suppress(ArmFileError):
+            return own_calibration(arm)
+        return None
+    return pulse_calibration(arm)
 
 
 def make_driver(name: str, arm: Arm, line: Line, clock: Clock) -> Driver:

@@ -47,8 +47,8 @@ def gentle_move(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -
         if (heights[:, -1].min() >= arm.pen.clearance_mm - _GRAZE_MM and free_of_paper
                 and slow_down(arm, np.concatenate((start[None], points)), 1 / rate_hz) <= 1):
             return points
-    raise PlanError(f"no way was found for arm '{arm.name}' from {_shown(arm, start)} to {_shown(arm, goal)} with its "
-                    "pen in the air (another [park] pose in its file may do)")
+    raise PlanError(f"no way was found for arm '{arm.name}' from ({in_words(arm, start)}) to ({in_words(arm, goal)}) "
+                    "with its pen in the air (another [park] pose in its file may do)")
 
 
 def come_from(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -> FloatArray:
@@ -73,6 +73,7 @@ def _straight(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -> 
     return points
 
 
-def _shown(arm: Arm, positions: FloatArray) -> str:
+def in_words(arm: Arm, positions: FloatArray) -> str:
+    """A posture (n_joints,), joint by joint."""
     values = zip(arm.joints, arm.to_file_units(positions), strict=True)
-    return "(" + ", ".join(f"{joint.name} {value:.1f} {joint.file_unit}" for joint, value in values) + ")"
+    return ", ".join(f"{joint.name} {value:.1f} {joint.file_unit}" for joint, value in values)

@@ -1,9 +1,10 @@
 """What of a trajectory has been drawn, kept beside its file so that it outlives whatever may happen to the host.
 
-A line of JSON for each thing to remember. The first says what is being drawn and from where on. The second, which is
-as long as ever and is written over, says how many set points the arm has reached. The others, only ever added, say how
-the controller counts, where in the trajectory the set points are, which stroke comes next and, at last, how the run
-ended. A line that a power failure or a full disk has torn is passed over.
+A line of JSON for each thing to remember, read by hardware/journal_entry.py. The first says what is being drawn, from
+where on and by which run. The second, which is as long as ever and is written over, says how many set points the arm
+has reached. The others, only ever added, say how the controller counts, where in the trajectory the set points are, up
+to which stroke all has been sent, which stroke comes next because all before it are known to be drawn and, at last, how
+the run ended. Each is on disk before the next.
 """
 
 from __future__ import annotations
@@ -13,22 +14,19 @@ import json
 import math
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
+from datetime import UTC, datetime
 from pathlib import Path
-from typing import IO, Any, cast
+from typing import IO, cast
 
 from hardware.clock import Clock
 from hardware.course import Piece, piece, sample_after
 from hardware.driver import Tally
+from hardware.journal_entry import COMPLETE, VERSION, Entry
 from planner.arrays import FloatArray
 from planner.errors import OutputError, TrajectoryFileError
 from planner.trajectory import written_aside
 
-_VERSION = 2
-_READABLE = (1, 2)
-_COMPLETE = "complete"
-_MOST = 1 << 48
-"""Nothing that a journal counts comes to so many."""
 _COUNTS_LENGTH = 140
 """Of the line that is written over: three numbers of 15 digits, one of 22, and their names."""
 NOTED_EVERY_S = 0.05
@@ -49,99 +47,16 @@ def digest(trajectory: Path) -> str:
         raise TrajectoryFileError(str(trajectory), None, f"cannot be read: {error.strerror}") from error
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
-    """What a journal says: the trajectory's digest, the arm and the driver, the stroke to go on from, and how the last
-    run ended, "" if nobody was left to say.
-
-    sample: the sample of the trajectory that the run began at, None for that of its stroke. tally: how the controller
-    counts the run, None where it does not. course: where its set points are, to be believed up to number
-    `course_until` if that is not None. reached, sent: set points known to have been reached, of how many; at: the
-    sample that they led to.
-    """
-
-    sha256: str
-    arm: str
-    driver: str
-    next_stroke: int
-    ended: str
-    sample: int | None = None
-    tally: Tally | None = None
-    course: tuple[Piece, ...] = ()
-    reached: int = 0
-    sent: int = 0
-    course_until: int | None = None
-    at: float | None = None
-
-    @property
-    def complete(self) -> bool:
-        return self.ended == _COMPLETE
-
-    @property
-    def settled(self) -> bool:
-        """Whether the run was there to see all that it sent being reached."""
-        return bool(self.ended) and self.reached == self.sent
-
-    def come_to(self, reached: int) -> float | None:
-        """The sample of the trajectory where `reached` set points have led, None for the beginning of its stroke."""
-        by_course = sample_after(self.course, reached if self.course_until is None else min(reached, self.course_until))
-        known = (self.sample, by_course, self.at if reached >= self.reached else None)
-        return max((sample for sample in known if sample is not None), default=None)
-
-
-def read_journal(path: Path) -> Entry | None:
-    """What the journal says, None where there is none. Errors: TrajectoryFileError if it is no journal."""
-    try:
-        lines = path.read_bytes().splitlines()
-    except FileNotFoundError:
-        return None
-    except OSError as error:
-        raise TrajectoryFileError(str(path), None, f"cannot be read: {error.strerror}") from error
-    told: dict[str, Any] = {"ended": "", "sample": None, "tally": None, "reached": 0, "sent": 0,
-                            "course_until": None, "at": None}
-    course = []
-    for line in lines:
-        try:
-            told |= json.loads(line)
-        except (ValueError, TypeError, RecursionError):
-            continue  # torn: what the other lines say holds
-        if "course" in told:
-            course.append(told.pop("course"))
-    try:
-        if told["journal"] in _READABLE:
-            return _entry(told, course)
-    except (KeyError, TypeError, ValueError, OverflowError):
-        pass
-    raise TrajectoryFileError(str(path), None, "is not a journal of this program; draw without --resume to replace it")
-
-
-def _entry(told: dict[str, Any], course: list[Any]) -> Entry:
-    """Errors: KeyError, TypeError, ValueError, OverflowError where something is missing or not what it should be."""
-    tally = None if told["tally"] is None else Tally(**told["tally"])
-    at = None if told["at"] is None else float(told["at"])
-    pieces = tuple(tuple((int(count), float(at)) for count, at in one) for one in course)
-    words = [told[key] for key in ("sha256", "arm", "driver", "ended")]
-    counts = [*(told[key] for key in ("next_stroke", "reached", "sent")), *(asdict(tally).values() if tally else ()),
-              *(count for one in pieces for count, _ in one),
-              *(told[key] for key in ("sample", "course_until") if told[key] is not None)]
-    if not all(isinstance(word, str) for word in words) or not all(type(count) is int for count in counts):
-        raise TypeError
-    if not all(0 <= count < _MOST for count in counts) or not all(pieces) or not all(
-            math.isfinite(sample) for one in (*pieces, [(0, at or 0.0)]) for _, sample in one):
-        raise ValueError
-    return Entry(words[0], words[1], words[2], told["next_stroke"], words[3], told["sample"], tally, pieces,
-                 told["reached"], told["sent"], told["course_until"], at)
-
-
 class Journal:
     """A journal being written. What is told while the arm moves is put on disk by a thread of its own: a slow disk
     never makes a set point late. What cannot be written is an error at the end, and makes nothing untrue."""
 
-    def __init__(self, path: Path, beginning: Entry, clock: Clock) -> None:
+    def __init__(self, path: Path, beginning: Entry, clock: Clock, port: str = "") -> None:
         """Begin a new journal in place of any other, on disk when this returns. Errors: OutputError."""
-        self._path, self.next_stroke, self._clock = path, beginning.next_stroke, clock
-        first = _line(journal=_VERSION, sha256=beginning.sha256, arm=beginning.arm, driver=beginning.driver,
-                      next_stroke=beginning.next_stroke, sample=beginning.sample)
+        self._path, self.next_stroke, self._last_sent, self._clock = path, beginning.next_stroke, -1, clock
+        first = _line(journal=VERSION, sha256=beginning.sha256, arm=beginning.arm, driver=beginning.driver,
+                      next_stroke=beginning.next_stroke, sample=beginning.sample, port=port, process=os.getpid(),
+                      began=datetime.now(UTC).isoformat(timespec="seconds"))
         counts = _counts_line(reached=0, sent=0, course_until=None, at=None)
         self._counts_at, self._end = len(first), len(first) + len(counts)
         self._counts = self._noted = (0, 0)
@@ -149,6 +64,8 @@ class Journal:
         self._course: list[Piece] = []
         self._course_until: int | None = None
         self._failure: OSError | None = None
+        if os.path.lexists(path) and not path.is_file():
+            raise OutputError(str(path), "it is no file")  # a pipe would be waited for
         with written_aside(path) as file:
             cast("IO[str]", file).write((first + counts).decode())
         try:
@@ -157,6 +74,16 @@ class Journal:
         except OSError as error:
             raise OutputError(str(path), error.strerror or str(error)) from error
         self._writer = ThreadPoolExecutor(max_workers=1, thread_name_prefix="journal")
+
+    @property
+    def in_doubt(self) -> range:
+        """As of an Entry."""
+        return range(self.next_stroke, self._last_sent + 1)
+
+    def sent(self, stroke: int) -> None:
+        """All of stroke `stroke` and of those before it has been sent."""
+        self._last_sent = stroke
+        self._writer.submit(self._add, _line(sent_stroke=stroke))
 
     def finished(self, stroke: int) -> None:
         """Stroke `stroke` and all before it are drawn."""
@@ -187,7 +114,7 @@ class Journal:
     def close(self, ended: str, *, complete: bool = False) -> None:
         """Say how the run ended, and wait until everything is on disk. Errors: OutputError."""
         self._note_counts()
-        self._writer.submit(self._add, _line(ended=_COMPLETE if complete else ended))
+        self._writer.submit(self._add, _line(ended=COMPLETE if complete else ended))
         try:
             self.wait()
         finally:

@@ -30,7 +30,8 @@ _THERE = 1e-6
 def play(programme: Programme, arm: Arm, driver: Driver, clock: Clock, *,
          request: Callable[[], Request] = lambda: Request.GO,
          report: Callable[[Progress], None] = lambda progress: None,
-         connected: Callable[[], None] = lambda: None, finished: Callable[[int], None] = lambda stroke: None,
+         connected: Callable[[], None] = lambda: None, sent: Callable[[int], None] = lambda stroke: None,
+         finished: Callable[[int], None] = lambda stroke: None,
          onward: Callable[[int, FloatArray], None] = lambda first, samples: None,
          reached: Callable[[int, int], None] = lambda executed, sent: None) -> Played:
     """Play `programme`: set point k at k / rate after the start, later only by pauses and stalls.
@@ -39,13 +40,13 @@ def play(programme: Programme, arm: Arm, driver: Driver, clock: Clock, *,
     then it comes down where it was and goes on from there. On a stop it brakes, lifts and goes to the park pose. On an
     e-stop it holds where it is. If something fails that is not the arm, such as `report`, it is stopped before the
     error goes on its way. `report(progress)` is called after every set point and has to be quick;
-    `connected()` once the arm is ready to play, `finished(stroke)` once a stroke is known to be drawn.
-    `onward(first, samples)` says where in the trajectory set points from number `first` on (counted from 1) will be,
-    before they are sent; `reached(executed, sent)` how many set points are known to have been reached, of how many.
-    The driver is closed in any case.
+    `connected()` once the arm is ready to play, `sent(stroke)` once all of a stroke has been sent, `finished(stroke)`
+    once it is known to be drawn. `onward(first, samples)` says where in the trajectory set points from number `first`
+    on (counted from 1) will be, before they are sent; `reached(executed, sent)` how many set points are known to have
+    been reached, of how many. The driver is closed in any case.
     Errors: HardwareError.
     """
-    playing = _Playing(programme, arm, driver, clock, request, report, finished, onward, reached)
+    playing = _Playing(programme, arm, driver, clock, request, report, sent, finished, onward, reached)
     try:
         driver.connect(programme.park)
         connected()
@@ -82,10 +83,10 @@ class _Playing:
     """Where playing is: `_next` is the index of the set point of the programme to be sent next."""
 
     def __init__(self, programme: Programme, arm: Arm, driver: Driver, clock: Clock, request: Callable[[], Request],
-                 report: Callable[[Progress], None], finished: Callable[[int], None],
+                 report: Callable[[Progress], None], sent: Callable[[int], None], finished: Callable[[int], None],
                  onward: Callable[[int, FloatArray], None], reached: Callable[[int, int], None]) -> None:
         self._programme, self._arm, self._driver, self._clock = programme, arm, driver, clock
-        self._request, self._report, self._finished = request, report, finished
+        self._request, self._report, self._stroke_sent, self._finished = request, report, sent, finished
         self._onward, self._tell_reached = onward, reached
         stroke = programme.stroke
         self._last_of_stroke = np.flatnonzero((stroke != TRAVELLING) & (stroke != np.append(stroke[1:], TRAVELLING)))
@@ -116,7 +117,8 @@ class _Playing:
         return End.PLAYED
 
     def tell_nobody(self) -> None:
-        self._report, self._finished = (lambda progress: None), (lambda stroke: None)
+        self._report = lambda progress: None
+        self._stroke_sent = self._finished = lambda stroke: None
         self._onward, self._tell_reached = (lambda first, samples: None), (lambda executed, sent: None)
 
     def stop(self) -> None:
@@ -223,6 +225,7 @@ class _Playing:
             stroke = int(self._programme.stroke[self._last_of_stroke[self._strokes_sent]])
             self._unconfirmed.append((self._sent, stroke))
             self._strokes_sent += 1
+            self._stroke_sent(stroke)
         self._sent_at.append((self._sent, index))
         self.note_finished()
         self._tell(paused=False)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from planner.counted import counted
+
 
 class Request(Enum):
     """What the people at the arm want of it now."""
@@ -58,12 +60,16 @@ class Played:
     parked: bool
     link: tuple[str, ...]
 
+    @property
+    def complete(self) -> bool:
+        return self.end is End.PLAYED
+
     def lines(self) -> list[str]:
         """The same in words."""
         rests = f"the pen rests {round(self.pen_height_mm, 2) + 0.0:.2f} mm above the paper"
         where = "the arm is parked" if self.parked else "the arm holds where it is"
-        words = [f"{self.end.value} after {self.sent} of {self.total} set points and {self.duration_s:.2f} s; {rests}, "
-                 f"{where}"]
+        words = [f"{self.end.value} after {self.sent} of {counted(self.total, 'set point')} and "
+                 f"{self.duration_s:.2f} s; {rests}, {where}"]
         if any(self.late_s):
             median, most, worst = (late_s * 1e3 for late_s in self.late_s)
             words.append(f"set points were late by {median:.2f} ms (median), {most:.2f} ms (99 of 100) and "

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
 
-from hardware.calibration import pulse_calibration
+from hardware.calibration import own_calibration
 from hardware.clock import Clock
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
@@ -27,6 +28,8 @@ class Servos(StrEnum):
     """Nothing between them and their set points but their limits of speed."""
     REAL = "real"
     """What the arm file says of its servos, resolution, dead band and backlash, and a lag."""
+    LAGGING = "lagging"
+    """A lag alone, for an arm file that says nothing of servos."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -76,7 +79,7 @@ class SimulatedArm:
     def __init__(self, arm: Arm, clock: Clock, servos: Servos = Servos.IDEAL) -> None:
         """Errors: ArmFileError where real servos are asked for that the arm file does not describe."""
         self._arm, self._clock = arm, clock
-        self._servos = _Ideal(arm) if servos is Servos.IDEAL else _Real(arm)
+        self._servos = _KINDS[servos](arm)
         self._target: FloatArray | None = None
         self._at_s = 0.0
         self._recorder = Recorder(arm.n_joints)
@@ -88,6 +91,9 @@ class SimulatedArm:
     @property
     def connected(self) -> bool:
         return self._target is not None
+
+    def open(self) -> None:
+        """There is no line."""
 
     def connect(self, pose: FloatArray) -> None:
         self._refuse_beyond_stops(pose)
@@ -163,16 +169,10 @@ class _Ideal:
         return float(np.max(np.abs(target - self.positions) / self._max_velocity))
 
 
-class _Real:
-    """Joints behind servos: a pulse of limited resolution, a motor that runs after what is beyond the dead band with
-    a lag, and gears with play, inside which the joint stays where it is."""
+class _Lagging:
+    """Joints that their motors move after their set points with a lag."""
 
     def __init__(self, arm: Arm) -> None:
-        self._calibration = pulse_calibration(arm)
-        servos = [joint.servo for joint in arm.joints if joint.servo is not None]
-        self._resolution_us = np.array([servo.resolution_us for servo in servos])
-        self._dead_band_us = np.array([servo.dead_band_us for servo in servos])
-        self._play = np.array([servo.backlash for servo in servos])
         self._max_velocity = arm.max_velocity
         self._motors = self.positions = np.zeros(arm.n_joints)
 
@@ -180,16 +180,45 @@ class _Real:
         self._motors = self.positions = positions.copy()
 
     def run(self, target: FloatArray, duration_s: float) -> None:
-        pulses_us = self._calibration.to_servos(target)
-        step_us = np.where(self._resolution_us > 0, self._resolution_us, 1.0)
-        pulses_us = np.where(self._resolution_us > 0, np.round(pulses_us / step_us) * step_us, pulses_us)
-        wanted = self._calibration.to_joints(pulses_us)
-        dead_band = np.abs(self._calibration.to_joints(pulses_us + self._dead_band_us) - wanted)
-        error = wanted - self._motors
-        pull = np.sign(error) * np.maximum(np.abs(error) - dead_band, 0.0)
         furthest = self._max_velocity * duration_s
-        self._motors = self._motors + np.clip(-np.expm1(-duration_s / _LAG_S) * pull, -furthest, furthest)
-        self.positions = np.clip(self.positions, self._motors - self._play / 2, self._motors + self._play / 2)
+        self._motors = self._motors + np.clip(-np.expm1(-duration_s / _LAG_S) * self._pull(target), -furthest, furthest)
+        self.positions = self._moved()
 
     def settling_s(self, target: FloatArray) -> float:
         return float(np.max(np.abs(target - self._motors) / self._max_velocity)) + _SETTLED_LAGS * _LAG_S
+
+    def _pull(self, target: FloatArray) -> FloatArray:
+        """How far each motor wants to go."""
+        return target - self._motors
+
+    def _moved(self) -> FloatArray:
+        """Where the motors take the joints."""
+        return self._motors
+
+
+class _Real(_Lagging):
+    """Joints behind servos: a pulse or a count of limited resolution, a motor that runs after what is beyond the dead
+    band, and gears with play, inside which the joint stays where it is."""
+
+    def __init__(self, arm: Arm) -> None:
+        super().__init__(arm)
+        self._calibration = own_calibration(arm)
+        self._step, self._dead_band = self._calibration.steps, self._calibration.dead_bands
+        self._play = self._calibration.backlash
+
+    def _pull(self, target: FloatArray) -> FloatArray:
+        told = self._calibration.to_servos(target)
+        step = np.where(self._step > 0, self._step, 1.0)
+        told = np.where(self._step > 0, np.round(told / step) * step, told)
+        wanted = self._calibration.to_joints(told)
+        dead_band = np.abs(self._calibration.to_joints(told + self._dead_band) - wanted)
+        error = wanted - self._motors
+        pull: FloatArray = np.sign(error) * np.maximum(np.abs(error) - dead_band, 0.0)
+        return pull
+
+    def _moved(self) -> FloatArray:
+        return np.clip(self.positions, self._motors - self._play / 2, self._motors + self._play / 2)
+
+
+_KINDS: dict[Servos, Callable[[Arm], _Ideal | _Lagging]] = {
+    Servos.IDEAL: _Ideal, Servos.REAL: _Real, Servos.LAGGING: _Lagging}

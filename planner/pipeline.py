@@ -14,16 +14,20 @@ from planner.affine import compose, rotation
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arms.canvas import canvas_of
+from planner.arms.kinematics import kinematics_of
 from planner.arms.posture_field import PostureField, posture_sheets
 from planner.arms.travel_embedding import travel_embedding
 from planner.arrays import BoolArray, FloatArray
+from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import extent, flatten_all
 from planner.drawing.join import join_strokes
 from planner.drawing.order import Metric, order_strokes
 from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
+from planner.head import LeftOut, Placement
 from planner.inverse_kinematics.stroke_postures import Obstacle
+from planner.phases import phases_of
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
 from planner.placement.pieces import Piece
@@ -42,8 +46,10 @@ from planner.portions import (
     timed_strokes,
 )
 from planner.settings import Method, PlanSettings
+from planner.stroke_figures import stroke_figures
 from planner.summary import PhaseTimes, PlanSummary
 from planner.timing.hops import Hop, HopRules
+from planner.timing.length_bound import require_bounded
 from planner.timing.limits import Limits
 from planner.trajectory import TRAVELLING, Trajectory
 from planner.workers import ALONE, Crew, Workers, crew_of
@@ -61,29 +67,36 @@ _BLOCK_SAMPLES = 65_536
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Plan:
+    """drawing: what was planned, as it was read."""
+
     trajectory: Trajectory
     summary: PlanSummary
+    drawing: Drawing
 
 
 def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Workers = ALONE) -> Plan:
     """Plan one drawing. The result is the same whoever does the work. Errors: PlannerError, before any result
     exists."""
+    report("reading", 0, 1)
     kit = Kit.of(load_arm(settings.arm), settings)
     arm = kit.arm
     lift_mm = _lift_mm(arm, settings)
     with crew_of(_worth_hiring(workers, drawing_file), partial(make_ready, kit)) as crew:
-        report("reading", 0, 1)
-        drawing = read_drawing(drawing_file)
-        svg_to_arm, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
-        strokes, warnings = _strokes(drawing, svg_to_arm, arm, settings)
+        drawing = read_drawing(drawing_file, partial(report, "reading"))
+        report("placing", 0, 1)
+        svg_to_arm, placement, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
+        report("joining", 0, 1)
+        strokes, left_out, warnings = _strokes(drawing, svg_to_arm, arm, settings)
         report("ordering strokes", 0, 1)
         strokes = _ordered(strokes, arm, settings, lift_mm)
-        timed, notes = _timed_strokes(crew, kit, strokes, report)
-        timed, hops, more_notes = _with_hops(crew, kit, timed, lift_mm, report)
+        _require_bounded(strokes, arm, settings, lift_mm)
+        timed, strokes, lost, notes = _timed_strokes(crew, kit, strokes, report)
+        timed, strokes, hops, more_lost, more_notes = _with_hops(crew, kit, timed, strokes, lift_mm, report)
     warnings += notes + more_notes
-    trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, timed, hops)
+    left_out += lost + more_lost
+    trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, placement, left_out, timed, hops)
     _verify(trajectory, arm)
-    return Plan(trajectory, _summary(trajectory, strokes, timed, hops, scale, size_mm, drawing, warnings))
+    return Plan(trajectory, _summary(trajectory, arm, timed, scale, size_mm, warnings), drawing)
 
 
 def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> tuple[list[FloatArray], list[str]]:
@@ -91,8 +104,8 @@ def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> tupl
     Errors: PlannerError."""
     lift_mm = _lift_mm(arm, settings)
     drawing = read_drawing(drawing_file)
-    svg_to_arm, _, _ = _placed(drawing, arm, settings, lift_mm)
-    strokes, warnings = _strokes(drawing, svg_to_arm, arm, settings)
+    svg_to_arm, _, _, _ = _placed(drawing, arm, settings, lift_mm)
+    strokes, _, warnings = _strokes(drawing, svg_to_arm, arm, settings)
     return _ordered(strokes, arm, settings, lift_mm), warnings
 
 
@@ -108,6 +121,19 @@ def _ordered(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, li
     return order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
 
 
+def _require_bounded(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> None:
+    """Errors: UsageError where speeds and rests alone, whatever the arm, make a plan too long."""
+    drawn_mm = sum(float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in strokes)
+    lowered_mm = len(strokes) * arm.pen.clearance_mm + lift_mm
+    parts = [(drawn_mm / settings.speed_mm_s, "drawing", "choose a higher --speed"),
+             (lowered_mm / settings.lowering_speed_mm_s, "lowering the pen", "choose a higher --lowering-speed"),
+             (len(strokes) * settings.dwell_s, "resting before strokes", "choose a shorter --dwell")]
+    longest_s, what, advice = max(parts)
+    require_bounded(longest_s, settings.rate_hz, what, f"{advice}, or a lower --rate")
+    whole_s = sum(seconds for seconds, _, _ in parts)
+    require_bounded(whole_s, settings.rate_hz, "the plan", f"{advice}, or a lower --rate")
+
+
 def _worth_hiring(workers: Workers, drawing_file: Path) -> Workers:
     """The workers, or none beside this process where a drawing is too small for them."""
     try:
@@ -118,8 +144,9 @@ def _worth_hiring(workers: Workers, drawing_file: Path) -> Workers:
 
 
 def _placed(drawing: Drawing, arm: Arm, settings: PlanSettings, lift_mm: float
-            ) -> tuple[FloatArray, float, tuple[float, float]]:
-    """The affine from SVG user units to arm millimetres, its scale against the page, and the size on paper."""
+            ) -> tuple[FloatArray, Placement, float, tuple[float, float]]:
+    """The affine from SVG user units to arm millimetres, what is told of it, its scale against the page, and the size
+    on paper."""
     canvas = canvas_of(arm, settings.canvas, lift_mm)
     turned = compose(rotation(settings.rotate_deg), drawing.user_to_page)
     low, high = extent(drawing.outlines, turned)
@@ -127,13 +154,19 @@ def _placed(drawing: Drawing, arm: Arm, settings: PlanSettings, lift_mm: float
                              may_exceed=settings.skip_unreachable)
     scale = float(np.hypot(*onto_arm[:, 0]))
     width, height = scale * (high - low)
-    return compose(onto_arm, turned), scale, (float(width), float(height))
+    # A drawing that keeps its size and may be cut is held within no rectangle.
+    is_held = settings.fit or not settings.skip_unreachable
+    sides = (canvas.near_mm, canvas.far_mm, canvas.right_mm, canvas.left_mm)
+    placement = Placement(sides if is_held else None, settings.margin_mm if is_held else None, scale,
+                          settings.rotate_deg)
+    return compose(onto_arm, turned), placement, scale, (float(width), float(height))
 
 
 def _strokes(drawing: Drawing, svg_to_arm: FloatArray, arm: Arm, settings: PlanSettings
-             ) -> tuple[list[FloatArray], list[str]]:
-    """Strokes (n, 2), arm mm, and what was left out on the way."""
+             ) -> tuple[list[FloatArray], LeftOut, list[str]]:
+    """Strokes (n, 2), arm mm, what was left out as out of reach, and what is to be said of them."""
     warnings = []
+    left_out = LeftOut()
     if drawing.skipped:
         counts = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
         warnings.append(f"not drawn as in the SVG: {counts}")
@@ -141,17 +174,27 @@ def _strokes(drawing: Drawing, svg_to_arm: FloatArray, arm: Arm, settings: PlanS
     strokes = join_strokes(strokes, _JOIN_SHARE * settings.tolerance_mm)
     sheets = posture_sheets(arm, settings.weights)
     if settings.skip_unreachable:
-        strokes, lost_mm, lost_whole = clip_strokes(strokes, _in_reach(sheets))
+        n_taps = _drawn(strokes).taps
+        strokes, lost_mm, lost_whole = clip_strokes(
+            strokes, _in_reach(sheets), max(float(sheet.radii_mm[-1]) for sheet in sheets))
+        left_out = LeftOut(lost_mm, n_taps - _drawn(strokes).taps)
         if lost_mm or lost_whole:
-            warnings.append(f"out of reach and left out: {lost_mm:.1f} mm of line; {lost_whole} strokes or taps whole")
+            whole = counted(lost_whole - left_out.taps, "stroke") + " and " + counted(left_out.taps, "tap")
+            warnings.append(f"out of reach and left out: {lost_mm:.1f} mm of line; {whole} whole")
         if not strokes:
             raise PlanError("nothing of the drawing is within reach")
     if len(sheets) > 1 and settings.method is Method.PATH:
         strokes, n_split, n_more = split_strokes(strokes, [sheet.reaches for sheet in sheets])
         if n_split:
-            warnings.append(f"split, as no one branch of postures reaches all of each: {n_split} strokes,"
-                            f" with {n_more} more pen lifts")
-    return strokes, warnings
+            warnings.append(f"split, as no one branch of postures reaches all of each: {counted(n_split, 'stroke')},"
+                            f" with {counted(n_more, 'more pen lift')}")
+    return strokes, left_out, warnings
+
+
+def _drawn(strokes: Sequence[FloatArray]) -> LeftOut:
+    """How much strokes are: what is left out without them."""
+    lengths = [float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in strokes if len(stroke) > 1]
+    return LeftOut(sum(lengths), len(strokes) - len(lengths))
 
 
 def _in_reach(sheets: Sequence[PostureField]) -> Callable[[FloatArray], BoolArray]:
@@ -163,21 +206,23 @@ def _in_reach(sheets: Sequence[PostureField]) -> Callable[[FloatArray], BoolArra
 
 
 def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: Report
-                   ) -> tuple[list[TimedStroke], list[str]]:
-    """Joint samples of all strokes that can be drawn, and what is to be said of them; those that cannot are left out if
-    the user wants so."""
+                   ) -> tuple[list[TimedStroke], list[FloatArray], LeftOut, list[str]]:
+    """Joint samples of all strokes that can be drawn, these strokes, and what is to be said of them; those that cannot
+    are left out if the user wants so."""
     settings = kit.settings
     pieces = pieces_of(kit, strokes)
     results = _results(crew, kit, list(chain.from_iterable(pieces)), report)
     timed: list[TimedStroke] = []
-    lost = 0
+    kept: list[FloatArray] = []
+    lost: list[FloatArray] = []
     for index, stroke in enumerate(strokes):
         made = list(islice(results, len(pieces[index])))
         obstacles = [result for result in made if isinstance(result, Obstacle)]
         if not obstacles:
             timed.append(TimedStroke.of([result for result in made if isinstance(result, TimedStroke)]))
+            kept.append(stroke)
         elif settings.skip_unreachable:
-            lost += 1
+            lost.append(stroke)
         else:
             first = obstacles[0]
             nearest = int(np.argmin(np.hypot(*(stroke - first.tip_mm).T)))
@@ -185,9 +230,11 @@ def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: 
     if not timed:
         raise PlanError("nothing of the drawing can be drawn within the joint limits")
     unsettled = sum(not stroke.settled for stroke in timed)
-    counted = [(lost, f"left out whole, as method {settings.method} cannot draw them"),
-               (unsettled, "timed by the fallback, slower than the least time")]
-    return timed, [f"{what}: {count} strokes" for count, what in counted if count]
+    loose = sum(not stroke.held for stroke in timed)
+    counts = [(len(lost), f"left out whole, as method {settings.method} cannot draw them"),
+              (unsettled, "timed by the fallback, slower than the least time"),
+              (loose, "off the drawing by more than the tolerance, however slow; try a larger --tolerance")]
+    return timed, kept, _drawn(lost), [f"{what}: {counted(count, 'stroke')}" for count, what in counts if count]
 
 
 def _results(crew: Crew, kit: Kit, pieces: Sequence[Piece], report: Report) -> Iterator[TimedStroke | Obstacle]:
@@ -200,22 +247,23 @@ def _results(crew: Crew, kit: Kit, pieces: Sequence[Piece], report: Report) -> I
         yield from results
 
 
-def _with_hops(crew: Crew, kit: Kit, timed: list[TimedStroke], lift_mm: float, report: Report
-               ) -> tuple[list[TimedStroke], list[Hop], list[str]]:
+def _with_hops(crew: Crew, kit: Kit, timed: list[TimedStroke], strokes: list[FloatArray], lift_mm: float,
+               report: Report) -> tuple[list[TimedStroke], list[FloatArray], list[Hop], LeftOut, list[str]]:
     """The strokes, the hops around them, and what is to be said of them. Strokes that the arm cannot get to, or away
     from, with its links apart are left out if the user wants so."""
-    n_before = len(timed)
+    lost: list[FloatArray] = []
     while True:
         hops = _hops(crew, kit, timed, lift_mm, report)
         blocked = {_end_that_collides(index, hop, len(timed)) for index, hop in enumerate(hops) if hop.collision}
         if not blocked:
-            lost = n_before - len(timed)
-            return timed, hops, [f"left out whole, as links would collide before or after them: {lost} strokes"] * (
-                lost > 0)
+            notes = [f"left out whole, as links would collide before or after them: {counted(len(lost), 'stroke')}"]
+            return timed, strokes, hops, _drawn(lost), notes if lost else []
         if not kit.settings.skip_unreachable:
             index, collision = next((index, hop.collision) for index, hop in enumerate(hops) if hop.collision)
             raise LinksCollide(index, collision.links, collision.clearance_mm, str(collision))
-        timed = [stroke for index, stroke in enumerate(timed) if index not in blocked]
+        lost += [strokes[index] for index in sorted(blocked)]
+        free = [index for index in range(len(timed)) if index not in blocked]
+        timed, strokes = [timed[index] for index in free], [strokes[index] for index in free]
         if not timed:
             raise PlanError("nothing of the drawing can be drawn with the arm's links apart")
 
@@ -229,7 +277,8 @@ def _end_that_collides(index: int, hop: Hop, n_strokes: int) -> int:
 def _hops(crew: Crew, kit: Kit, timed: Sequence[TimedStroke], lift_mm: float, report: Report) -> list[Hop]:
     """The pen-up moves before, between and after the strokes."""
     arm, settings = kit.arm, kit.settings
-    rules = HopRules(arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz)
+    rules = HopRules(arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz,
+                     settings.tolerance_mm)
     leave = [None, *(stroke.last for stroke in timed)]
     meet = [*(stroke.first for stroke in timed), None]
     hops: list[Hop] = []
@@ -243,8 +292,8 @@ def _hops(crew: Crew, kit: Kit, timed: Sequence[TimedStroke], lift_mm: float, re
     return hops
 
 
-def _assembled(arm: Arm, drawing_file: Path, settings: PlanSettings, svg_to_arm: FloatArray,
-               timed: Sequence[TimedStroke], hops: Sequence[Hop]) -> Trajectory:
+def _assembled(arm: Arm, drawing_file: Path, settings: PlanSettings, svg_to_arm: FloatArray, placement: Placement,
+               left_out: LeftOut, timed: Sequence[TimedStroke], hops: Sequence[Hop]) -> Trajectory:
     """All samples in order. Hops and strokes share the samples where they meet; these count as drawn."""
     n_samples = (sum(stroke.dwell_samples + len(stroke.joints) for stroke in timed)
                  + sum(len(hop.joints) for hop in hops) - 2 * len(timed))
@@ -265,7 +314,7 @@ def _assembled(arm: Arm, drawing_file: Path, settings: PlanSettings, svg_to_arm:
     return Trajectory(
         arm=settings.arm, drawing=drawing_file.name, method=settings.method.value, rate_hz=settings.rate_hz,
         columns=arm.column_names, positions=positions, pen=strokes != TRAVELLING, stroke=strokes,
-        svg_to_arm_mm=(a, b, c, d, e, f))
+        svg_to_arm_mm=(a, b, c, d, e, f), placement=placement, left_out=left_out)
 
 
 def _verify(trajectory: Trajectory, arm: Arm) -> None:
@@ -274,22 +323,21 @@ def _verify(trajectory: Trajectory, arm: Arm) -> None:
     slowing = max(  # blocks overlap by the three samples that a third difference looks back
         limits.slowing_of(arm.from_file_units(trajectory.positions[begin:begin + _BLOCK_SAMPLES + 3]), period_s)
         for begin in range(0, trajectory.n_samples, _BLOCK_SAMPLES))
+    if not np.isfinite(trajectory.positions).all():
+        raise PlanError("the trajectory has positions that are no finite numbers: a defect of the planner, please"
+                        " report it with the drawing")
     if slowing > 1 + 1e-6:
         raise PlanError(f"the timing exceeds a joint limit by {100 * (slowing - 1):.3f} % of speed:"
                         " a defect of the planner, please report it with the drawing")
 
 
-def _summary(trajectory: Trajectory, strokes: Sequence[FloatArray], timed: Sequence[TimedStroke], hops: Sequence[Hop],
-             scale: float, size_mm: tuple[float, float], drawing: Drawing, warnings: list[str]) -> PlanSummary:
-    period = 1 / trajectory.rate_hz
-    phases = PhaseTimes(
-        drawing_s=sum(len(stroke.joints) - 1 for stroke in timed) * period,
-        lowering_s=sum(hop.lowering_s for hop in hops), lifting_s=sum(hop.lifting_s for hop in hops),
-        travelling_s=sum(hop.travelling_s for hop in hops),
-        dwelling_s=sum(stroke.dwell_samples for stroke in timed) * period)
+def _summary(trajectory: Trajectory, arm: Arm, timed: Sequence[TimedStroke], scale: float,
+             size_mm: tuple[float, float], warnings: list[str]) -> PlanSummary:
+    tips_mm = kinematics_of(arm).tip_mm(kinematics_of(arm).free_of(arm.from_file_units(trajectory.positions)))
+    phases = PhaseTimes.of(phases_of(trajectory, tips_mm, arm.pen.clearance_mm), trajectory.rate_hz)
     return PlanSummary(
         n_strokes=len(timed), n_taps=sum(len(stroke.joints) == 1 for stroke in timed),
-        drawn_mm=float(sum(np.hypot(*np.diff(stroke, axis=0).T).sum() for stroke in strokes if len(stroke) > 1)),
+        drawn_mm=float(stroke_figures(trajectory, tips_mm).length_mm.sum()),
         travelled_mm=float(sum(np.hypot(*(after.first.tip_mm - before.last.tip_mm))
                                for before, after in pairwise(timed))),
         size_mm=size_mm, scale=scale, phases=phases, duration_s=trajectory.duration_s,

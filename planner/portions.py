@@ -24,22 +24,24 @@ from planner.inverse_kinematics.stroke_postures import (
     exact_postures,
     joint_paths,
     postures_at,
+    strays_mm,
 )
-from planner.placement.pen_path import PenPaths, smooth_paths
+from planner.placement.pen_path import PenPaths, smoothed
 from planner.placement.pieces import Piece, in_pieces
 from planner.settings import Method, PlanSettings
 from planner.timing.branch_change import keeps_branch, plan_branch_change
 from planner.timing.bulge_cap import bulge_cap
+from planner.timing.held_motion import timed_within
 from planner.timing.hops import Hop, HopRules, Touch, plan_hops
 from planner.timing.limits import Limits
-from planner.timing.path_timing import minimum_time
 from planner.timing.speed_cap import rate_cap
-from planner.timing.stroke_motion import motions
-from planner.timing.timing_problem import FRACTIONS, TimingProblem
+from planner.timing.timing_problem import FRACTIONS
 
 SMOOTH_SHARE, SAMPLE_SHARE, BULGE_SHARE = 0.5, 0.4, 0.04
 """Shares of the tolerance: rounded corners, straight lines between samples, and what the tip strays from these because
 it is the joints that move straight."""
+_SPLINE_SHARE = 0.04
+"""Share of the tolerance that the joints' splines may stray between their knots before there are more of them."""
 
 _PORTION_WORK = 4000.0
 _LEAST_WORK = 10.0
@@ -56,7 +58,8 @@ _TAP_S = 0.05
 class TimedStroke:
     """A stroke ready to be drawn: joint samples (n, n_joints) and where it touches down and lifts off.
 
-    settled: whether its timing is near the least time, rather than the fallback.
+    settled: whether its timing is near the least time, rather than the fallback. held: whether the pen stays within the
+    tolerance between its samples.
     """
 
     joints: FloatArray
@@ -64,6 +67,7 @@ class TimedStroke:
     last: Touch
     dwell_samples: int
     settled: bool = True
+    held: bool = True
 
     @staticmethod
     def of(pieces: Sequence[TimedStroke]) -> TimedStroke:
@@ -72,7 +76,7 @@ class TimedStroke:
             return pieces[0]
         joints = np.concatenate([pieces[0].joints, *(piece.joints[1:] for piece in pieces[1:])])
         return TimedStroke(joints, pieces[0].first, pieces[-1].last, pieces[0].dwell_samples,
-                           all(piece.settled for piece in pieces))
+                           all(piece.settled for piece in pieces), all(piece.held for piece in pieces))
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,8 +187,11 @@ def _with_collisions(arm: Arm, hops: Sequence[Hop]) -> list[Hop]:
 
 
 def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedStroke | Obstacle]:
-    paths = smooth_paths(strokes, SMOOTH_SHARE * settings.tolerance_mm)
+    paths, smooth = smoothed(strokes, SMOOTH_SHARE * settings.tolerance_mm)
     splines, obstacles = joint_paths(arm, settings.method, paths, settings.weights)
+    if not obstacles and strays_mm(arm, paths, splines).max() > _SPLINE_SHARE * settings.tolerance_mm:
+        paths = paths.halved()
+        splines, obstacles = joint_paths(arm, settings.method, paths, settings.weights)
     if obstacles:
         blocked = {obstacle.path: obstacle for obstacle in obstacles}
         open_ways = [index for index in range(len(strokes)) if index not in blocked]
@@ -193,19 +200,17 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
     limits = Limits.of(arm)
     for _ in range(_TIMING_HALVINGS):
         paths, splines = paths.halved(), splines.halved()
-    derivatives = (splines.positions(FRACTIONS, 1), splines.positions(FRACTIONS, 2), splines.positions(FRACTIONS, 3))
-    problem = TimingProblem.of(paths.n_cells, derivatives, limits, pen_cap(arm, paths, splines, settings))
-    timing = minimum_time(problem)
-    motion = motions(splines, timing.rates, limits, settings.rate_hz)
     kinematics = kinematics_of(arm)
+    motions = timed_within(kinematics, limits, paths, splines, pen_cap(arm, paths, splines, settings),
+                           settings.tolerance_mm, settings.rate_hz)
     dwell = round(settings.dwell_s * settings.rate_hz)
-    samples = motion.samples()
-    collisions = collision_obstacles(arm, samples)
+    collisions = collision_obstacles(arm, [motion.joints for motion in motions])
     timed: list[TimedStroke | Obstacle] = []
-    for index, (stroke, joints, settled) in enumerate(zip(strokes, samples, timing.settled.tolist(), strict=True)):
-        free = kinematics.free_of(joints)
+    for index, (stroke, motion, is_smooth) in enumerate(zip(strokes, motions, smooth.tolist(), strict=True)):
+        free = kinematics.free_of(motion.joints)
         timed.append(collisions.get(index) or TimedStroke(
-            joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell, settled))
+            motion.joints, Touch(stroke[0], free[0]), Touch(stroke[-1], free[-1]), dwell, motion.settled,
+            motion.held and is_smooth))
     return timed
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import os
 import stat
+import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,19 +14,28 @@ from typing import IO, cast
 
 import numpy as np
 
-from planner.arrays import BoolArray, FloatArray, IntArray
+from planner.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from planner.errors import OutputError, TrajectoryFileError
+from planner.files import STANDARD_OUTPUT_DESCRIPTOR, is_standard_output
+from planner.head import (
+    LONGEST_LINE,
+    NOTHING_LEFT_OUT,
+    NOTHING_TOLD,
+    Head,
+    LeftOut,
+    Placement,
+    is_number,
+    read_head,
+    shown,
+)
 
-FORMAT_VERSION = 1
 TRAVELLING = -1
 """Value of `stroke` while the pen is travelling, lifting or lowering."""
 
 _DECIMALS = 9
-_FIRST_LINE = 9  # after seven comment lines and the column names
+_FEWEST_DECIMALS, _MOST_DECIMALS = 6, 17
 _BLOCK_ROWS = 65_536
 _BLOCK_CHARACTERS = 1 << 22
-_LONGEST_LINE = 1 << 16
-_LOWEST_RATE_HZ, _HIGHEST_RATE_HZ = 1e-3, 1e5  # times are written in microseconds
 _LARGEST = 1e9
 
 
@@ -40,7 +49,10 @@ class Trajectory:
     stroke: (n_samples,) index of the stroke being drawn, or TRAVELLING.
     svg_to_arm_mm: (a, b, c, d, e, f) from SVG user units to arm millimetres,
         x = a u + c v + e, y = b u + d v + f.
-    first_line: the line that its first sample has in its file, for messages that name lines.
+    decimals: as `positions`, how many decimals each has in the file that it was read from; None where it was not.
+    first_line: the line that its first sample has in that file, for messages that name lines; None where there is no
+        such file: it is then the line that it would be written to.
+    placement: what the header tells of where the drawing went. left_out: what was not drawn on purpose.
     """
 
     arm: str
@@ -52,11 +64,21 @@ class Trajectory:
     pen: BoolArray
     stroke: IntArray
     svg_to_arm_mm: tuple[float, float, float, float, float, float]
-    first_line: int = _FIRST_LINE
+    first_line: int | None = None
+    decimals: ByteArray | None = None
+    placement: Placement = NOTHING_TOLD
+    left_out: LeftOut = NOTHING_LEFT_OUT
 
     def line(self, sample: int) -> int:
         """Line of a sample in its file, counted from 1."""
-        return self.first_line + sample
+        first_line = self.head.n_lines + 2 if self.first_line is None else self.first_line
+        return first_line + sample
+
+    @property
+    def head(self) -> Head:
+        """The comment lines of its file."""
+        return Head(self.arm, self.drawing, self.method, self.rate_hz, self.duration_s, self.svg_to_arm_mm,
+                    self.placement, self.left_out)
 
     @property
     def n_samples(self) -> int:
@@ -72,14 +94,32 @@ class Trajectory:
         times: FloatArray = np.arange(self.n_samples) / self.rate_hz
         return times
 
+    @property
+    def rounding(self) -> FloatArray:
+        """(n_samples, n_joints) how far each position can be from the one that was meant, in its unit: half of its
+        last decimal in the file, and what arithmetic in double precision loses. Fewer than six decimals are none that a
+        trajectory has: there, zeros at the end were left out."""
+        held = 4 * np.finfo(np.float64).eps * np.abs(self.positions)
+        if self.decimals is None:
+            return held
+        rounding: FloatArray = held + 0.5 * 10.0 ** -np.clip(self.decimals, _FEWEST_DECIMALS, _MOST_DECIMALS)
+        return rounding
+
 
 @contextmanager
 def written_aside(target: Path, *, binary: bool = False) -> Iterator[IO[str] | IO[bytes]]:
     """A file that takes the place of `target` only once it is complete and on disk; nothing is left
     behind otherwise. A symbolic link stays one, and the file that it points to is replaced; a device or
-    a pipe is written to as it is. Errors: OutputError."""
+    a pipe is written to as it is, and so is standard output; a reader of that who has gone away (`| head`) is no
+    error. Errors: OutputError."""
     aside = None
     try:
+        if is_standard_output(target):
+            if sys.stdout is not None:
+                sys.stdout.flush()
+            with suppress(BrokenPipeError), _opened(os.dup(STANDARD_OUTPUT_DESCRIPTOR), binary) as file:
+                yield file
+            return
         if target.is_dir():
             raise OutputError(str(target), "it is a folder")
         if target.exists() and not target.is_file():
@@ -101,7 +141,8 @@ def written_aside(target: Path, *, binary: bool = False) -> Iterator[IO[str] | I
         aside.replace(final)
         aside = None
     except OSError as error:
-        raise OutputError(str(target), error.strerror or str(error)) from error
+        name = "to standard output" if is_standard_output(target) else str(target)
+        raise OutputError(name, error.strerror or str(error)) from error
     finally:
         if aside is not None:
             with suppress(OSError):
@@ -131,17 +172,7 @@ def write_trajectory(trajectory: Trajectory, target: Path) -> None:
 
 
 def _write(trajectory: Trajectory, file: IO[str]) -> None:
-    affine = " ".join(repr(float(value)) for value in trajectory.svg_to_arm_mm)
-    for key, value in (
-        ("trajectory", str(FORMAT_VERSION)),
-        ("arm", trajectory.arm),
-        ("drawing", trajectory.drawing),
-        ("method", trajectory.method),
-        ("rate_hz", repr(float(trajectory.rate_hz)).removesuffix(".0")),
-        ("duration_s", f"{trajectory.duration_s:.9g}"),
-        ("svg_to_arm_mm", affine),
-    ):
-        file.write(f"# {key}: {' '.join(value.split())}\n")
+    file.write(trajectory.head.text())
     file.write(",".join(("t_s", *trajectory.columns, "pen", "stroke")) + "\n")
     row = ",".join(["%.6f", *[f"%.{_DECIMALS}f"] * len(trajectory.columns), "%d", "%d"]) + "\n"
     for start in range(0, trajectory.n_samples, _BLOCK_ROWS):
@@ -161,81 +192,23 @@ def read_trajectory(source: Path) -> Trajectory:
     name = str(source)
     try:
         with source.open(encoding="utf-8-sig", errors="replace") as file:
-            header, columns, first_line = _read_head(name, file)
-            table = _read_rows(name, file, first_line, len(columns) + 3)
+            head, line, number = read_head(name, file)
+            columns, first_line = _joint_columns(name, line, number), number + 1
+            table, decimals = _read_rows(name, file, first_line, len(columns) + 3)
     except OSError as error:
-        raise TrajectoryFileError(name, None, f"cannot be read: {error.strerror}") from error
-    rate_hz = header.rate_hz
-    _check_rows(name, table, rate_hz, first_line)
-    if abs(header.duration_s - table[-1, 0]) > 0.5 / rate_hz:
+        raise TrajectoryFileError(name, None, f"cannot be read: {error.strerror or error}") from error
+    _check_rows(name, table, head.rate_hz, first_line)
+    if abs(head.duration_s - table[-1, 0]) > 0.5 / head.rate_hz:
         raise TrajectoryFileError(
             name, first_line + len(table) - 1,
-            f"the last sample is at {table[-1, 0]:g} s, the header promises {header.duration_s:g} s")
-    if not header.texts.get("arm"):
+            f"the last sample is at {table[-1, 0]:g} s, the header promises {head.duration_s:g} s")
+    if not head.arm:
         raise TrajectoryFileError(name, None, "names no arm (no '# arm:' line)")
     return Trajectory(
-        arm=header.texts["arm"], drawing=header.texts.get("drawing", ""),
-        method=header.texts.get("method", ""), rate_hz=rate_hz, columns=columns,
+        arm=head.arm, drawing=head.drawing, method=head.method, rate_hz=head.rate_hz, columns=columns,
         positions=np.ascontiguousarray(table[:, 1:-2]), pen=table[:, -2] != 0, stroke=table[:, -1].astype(np.int64),
-        svg_to_arm_mm=header.svg_to_arm_mm, first_line=first_line)
-
-
-@dataclass(frozen=True, slots=True)
-class _Header:
-    texts: Mapping[str, str]
-    rate_hz: float
-    duration_s: float
-    svg_to_arm_mm: tuple[float, float, float, float, float, float]
-
-
-def _read_head(name: str, file: IO[str]) -> tuple[_Header, tuple[str, ...], int]:
-    """Header, joint columns, and the line of the first sample."""
-    found: dict[str, tuple[str, int]] = {}
-    number = 1
-    while (line := file.readline(_LONGEST_LINE)).startswith("#"):
-        key, separator, value = line[1:].partition(":")
-        if separator:
-            found[key.strip()] = value.strip(), number
-        number += 1
-    version, version_line = found.get("trajectory", (None, 1))
-    if version is None:
-        raise TrajectoryFileError(name, 1, "does not begin as a trajectory (no '# trajectory: 1' line)")
-    if version != str(FORMAT_VERSION):
-        raise TrajectoryFileError(
-            name, version_line, f"is of format '{_shown(version)}'; this planner reads format {FORMAT_VERSION}")
-    rate_hz = _numbers(name, found, "rate_hz", 1)[0]
-    if not _LOWEST_RATE_HZ <= rate_hz <= _HIGHEST_RATE_HZ:
-        raise TrajectoryFileError(
-            name, found["rate_hz"][1],
-            f"rate_hz is {rate_hz:g}; it has to be from {_LOWEST_RATE_HZ:g} to {_HIGHEST_RATE_HZ:g}")
-    duration_s = _numbers(name, found, "duration_s", 1)[0]
-    a, b, c, d, e, f = _numbers(name, found, "svg_to_arm_mm", 6)
-    if not line:
-        raise TrajectoryFileError(name, max(number - 1, 1), "ends before its column names")
-    texts = {key: value for key, (value, _) in found.items()}
-    return _Header(texts, rate_hz, duration_s, (a, b, c, d, e, f)), _joint_columns(name, line, number), number + 1
-
-
-def _numbers(name: str, found: Mapping[str, tuple[str, int]], key: str, count: int) -> list[float]:
-    if key not in found:
-        raise TrajectoryFileError(name, None, f"has no '# {key}:' line")
-    text, line = found[key]
-    cells = text.split()
-    if len(cells) != count or not all(map(_is_number, cells)):
-        raise TrajectoryFileError(name, line, f"'# {key}:' is '{_shown(text)}'; wanted {count} number(s)")
-    return [float(cell) for cell in cells]
-
-
-def _is_number(text: str) -> bool:
-    try:
-        return math.isfinite(float(text)) and text.isascii() and "_" not in text
-    except ValueError:
-        return False
-
-
-def _shown(text: str) -> str:
-    """A part of a file as it may stand in a message: short, and without characters that upset a terminal."""
-    return "".join(character if character.isprintable() else "?" for character in text[:60])
+        svg_to_arm_mm=head.svg_to_arm_mm, first_line=first_line, decimals=decimals, placement=head.placement,
+        left_out=head.left_out)
 
 
 def _joint_columns(name: str, line: str, number: int) -> tuple[str, ...]:
@@ -245,29 +218,53 @@ def _joint_columns(name: str, line: str, number: int) -> tuple[str, ...]:
     joints = tuple(names[1:-2])
     for column in joints:
         if not column.endswith(("_deg", "_mm")):
-            raise TrajectoryFileError(name, number, f"column '{_shown(column)}' has no unit (_deg or _mm)")
+            raise TrajectoryFileError(name, number, f"column '{shown(column)}' has no unit (_deg or _mm)")
     if len(set(joints)) != len(joints):
         raise TrajectoryFileError(name, number, "two columns have the same name")
     return joints
 
 
-def _read_rows(name: str, file: IO[str], first_line: int, width: int) -> FloatArray:
-    """(n_samples, width) all cells; read in blocks, so that memory is that of the numbers."""
-    blocks = []
+def _read_rows(name: str, file: IO[str], first_line: int, width: int) -> tuple[FloatArray, ByteArray]:
+    """(n_samples, width) all cells, and the decimals of the joints' ones; read in blocks, so that memory is that of
+    the numbers."""
+    blocks, decimals = [], []
     number, rest = first_line, ""
-    while chunk := file.read(_BLOCK_CHARACTERS):
+    while True:
+        chunk = file.read(_BLOCK_CHARACTERS)
         rows = (rest + chunk).split("\n")
         rest = rows.pop()
-        if len(rest) > _LONGEST_LINE:
+        if len(rest) > LONGEST_LINE:
             raise TrajectoryFileError(name, number + len(rows), "is too long for a sample")
+        if not chunk and rest:
+            rows.append(rest)
         if rows:
             blocks.append(_table(name, rows, number, width))
+            decimals.append(_decimals(rows, width)[:, 1:-2])
             number += len(rows)
-    if rest:
-        blocks.append(_table(name, [rest], number, width))
+        if not chunk:
+            break
     if not blocks:
         raise TrajectoryFileError(name, first_line - 1, "has no samples")
-    return np.concatenate(blocks)
+    return np.concatenate(blocks), np.concatenate(decimals)
+
+
+def _decimals(rows: Sequence[str], width: int) -> ByteArray:
+    """(n_rows, width) digits after the point of each cell, less the power of ten that it is multiplied by."""
+    text = np.frombuffer((",".join(rows) + ",").encode(errors="replace"), dtype=np.uint8)
+    ends = np.flatnonzero(text == ord(","))
+    exponents = np.flatnonzero((text == ord("e")) | (text == ord("E")))
+    digits = np.cumsum((text >= ord("0")) & (text <= ord("9")), dtype=np.int32)
+    points = np.flatnonzero(text == ord("."))
+    last = ends.copy()  # where the digits of each cell end
+    cell_of_exponent = np.searchsorted(ends, exponents)
+    last[cell_of_exponent] = exponents
+    found = np.zeros(len(ends), dtype=np.int64)
+    cell_of_point = np.searchsorted(ends, points)
+    found[cell_of_point] = digits[last[cell_of_point]] - digits[points]
+    for cell, exponent in zip(cell_of_exponent.tolist(), exponents.tolist(), strict=True):
+        found[cell] -= int(text[exponent + 1:ends[cell]].tobytes())
+    decimals: ByteArray = np.clip(found, 0, _MOST_DECIMALS).astype(np.int8).reshape(len(rows), width)
+    return decimals
 
 
 def _table(name: str, rows: list[str], first_line: int, width: int) -> FloatArray:
@@ -283,8 +280,8 @@ def _table(name: str, rows: list[str], first_line: int, width: int) -> FloatArra
         if len(cells) != width:
             raise TrajectoryFileError(name, number, f"has {len(cells)} cell(s); wanted {width}")
         for cell in cells:
-            if not _is_number(cell):
-                raise TrajectoryFileError(name, number, f"'{_shown(cell.strip())}' is not a finite number")
+            if not is_number(cell):
+                raise TrajectoryFileError(name, number, f"'{shown(cell.strip())}' is not a finite number")
             if abs(float(cell)) >= _LARGEST:
                 raise TrajectoryFileError(name, number, f"{float(cell):g} is beyond any time, joint or stroke")
     raise TrajectoryFileError(name, first_line, "begins a part that cannot be read as numbers")

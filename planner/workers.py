@@ -1,7 +1,7 @@
 """Work in portions: in this process and processes beside it, or on a Dask cluster.
 
 Results come in the order of the portions, whoever did them, so that nothing of the outcome depends on the number of
-workers. The doorway to joblib, whose processes start without running the main module anew, and to Dask.
+workers. The doorway to loky, whose processes start without running the main module anew, and to Dask.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def _done(work: Callable[[Portion], Result], portion: Portion) -> Future[Result]
 @contextmanager
 def _processes(count: int, prepare: Callable[[], None] | None) -> Iterator[Executor]:
     """Processes that start at once, and are gone in the end, however it comes."""
-    from joblib.externals.loky import ProcessPoolExecutor
+    from loky import ProcessPoolExecutor
 
     executor = ProcessPoolExecutor(count, initializer=_settle_in, initargs=(os.getpid(), prepare),
                                    env=dict.fromkeys(THREAD_VARIABLES, "1"))
@@ -144,7 +144,7 @@ def _interrupts_held() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    from joblib.externals.loky.backend import resource_tracker
+    from loky.backend import resource_tracker
 
     resource_tracker.ensure_running()  # the start of either would let interrupts through again
     multiprocessing.resource_tracker.ensure_running()

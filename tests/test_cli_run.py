@@ -24,6 +24,7 @@ from planner.drawing.svg import read_drawing
 from planner.trajectory import read_trajectory
 from tests.hardware.controllers.lines import pty_line
 from tests.hardware.controllers.maestro import MaestroModel
+from tests.hardware.controllers.ssc32 import Ssc32Model
 
 ROOT = Path(__file__).resolve().parent.parent
 RUN = [sys.executable, "-m", "planner.cli", "run"]
@@ -103,6 +104,7 @@ def test_a_dry_run_says_what_would_be_sent_and_sends_nothing(
     (["--resume"], "there is nothing to resume: no journal"),
     (["--from-stroke", "10"], "there is no stroke 10; the drawing has 0 to 9"),
     (["--picture", "drawn.bmp"], "a picture file ends in one of"),
+    (["--picture", "d" * 300 + ".png"], "File name too long"),
     (["--arm", "scara"], "moves the joints q1_deg, q2_deg"),
     (["--arm", "drawing_arm_2022"], "line "),
 ])
@@ -121,7 +123,7 @@ def test_a_file_that_was_cut_off_is_refused(taps_csv: Path, capsys: pytest.Captu
     last_s = lines[-1].split(",")[0]
     taps_csv.write_text(re.sub(r"(?<=duration_s: ).*", last_s, "\n".join(lines)) + "\n")
     assert main(["run", str(taps_csv)]) == 2
-    assert re.search(r"line (299|300): joint", _error(capsys))
+    assert re.search(r"line 300: breaks a law of .plan check.*ends at rest", _error(capsys))
 
 
 def test_from_a_stroke_on_and_then_nothing_is_left(
@@ -225,6 +227,11 @@ class _Terminal:
     def shows_keys(self) -> bool:
         return bool(termios.tcgetattr(self._master)[3] & termios.ECHO)
 
+    def hang_up(self) -> int:
+        """Close the terminal; the exit code."""
+        os.close(self._master)
+        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+
     def end(self) -> int:
         """Its exit code, once everything it said has been seen."""
         while True:
@@ -253,6 +260,8 @@ def test_keys_pause_resume_and_stop(ring_csv: Path) -> None:
     terminal.seen = ""
     terminal.press(b"p")
     terminal.wait_for("stroke")
+    assert terminal.seen.count(" s left") > 0
+    assert "-:--:--" not in terminal.seen and "0:00:" not in terminal.seen  # one clock, which a pause does not mislead
     terminal.press(b"q")
     terminal.wait_for("stopped after")
     assert terminal.end() == 130
@@ -272,6 +281,48 @@ def test_the_terminal_is_as_it_was_whatever_ends_it(ring_csv: Path, key: bytes) 
     assert terminal.shows_keys
     assert terminal.end() == 130
     assert ("the arm holds where it is" in terminal.seen) == (key != b"\x03")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs devices")
+def test_nothing_is_said_of_servos_before_the_port_is_open(taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["run", str(taps_csv), "--driver", "ssc32", "--port"]
+    assert main([*command, str(taps_csv.parent / "nothing")]) == 4
+    _error(capsys)
+    with pty_line(Ssc32Model()) as far:
+        assert main([*command, far.name, "--from-stroke", "9"]) == 0
+    assert "its servos are attached at the park pose" in capsys.readouterr().err
+
+
+def test_where_all_is_drawn_nothing_is_left_to_resume(
+        taps_csv: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stopped on the way back to the park pose."""
+    from planner.cli.keeping import Keeping
+
+    def stop(keeping: Keeping, stroke: int) -> None:
+        told(keeping, stroke)
+        if stroke == 9:
+            signal.raise_signal(signal.SIGTERM)
+
+    told = Keeping.finished
+    monkeypatch.setattr(Keeping, "finished", stop)
+    assert main(["run", str(taps_csv), "--fast"]) == 130
+    assert "all strokes are drawn; there is nothing left for --resume" in capsys.readouterr().err
+    assert main(["run", str(taps_csv), "--fast", "--resume"]) == 0
+    assert "is drawn to its end" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("arm", ["drawing_arm", "drawing_arm_2022", "scara", "six_joint", "so101", "stanford",
+                                 "three_joint"])
+def test_every_arm_can_be_rehearsed_with_real_servos(
+        arm: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    drawing, csv = tmp_path / "drawing.svg", tmp_path / "traj.csv"
+    drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20"><path d="M5 5h9"/></svg>')
+    assert main([str(drawing), "-o", str(csv), "--quiet", "--arm", arm]) == 0
+    assert main(["run", str(csv), "--fast", "--servos", "real"]) == 0
+    described = arm in ("drawing_arm", "drawing_arm_2022", "so101")
+    assert ("says neither servo nor bus" in capsys.readouterr().err) is not described
+    assert main(["run", str(csv), "--dry-run"]) == 0
+    assert ("the arm file says nothing of them" in capsys.readouterr().out) is not described
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")

@@ -19,6 +19,7 @@ from planner.arrays import FloatArray
 from planner.checking.check import check_trajectory
 from planner.drawing.svg import read_drawing
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach, UnknownArm, UsageError
+from planner.head import LeftOut
 from planner.pipeline import Plan, plan
 from planner.placement import pieces
 from planner.settings import CanvasKind, Method, PlanSettings
@@ -192,8 +193,14 @@ def test_what_is_out_of_reach_is_named_or_left_out(tmp_path: Path) -> None:
     assert caught.value.exit_code == 3 and caught.value.stroke >= 0 and caught.value.joint == "q1"
     result = planned(tmp_path, shapes, replace(wanted, skip_unreachable=True))
     assert any("out of reach" in warning for warning in result.summary.warnings)
-    verdict = check_trajectory(result.trajectory, load_once(str(file)))
+    told, shown = result.trajectory.left_out, read_drawing(tmp_path / "drawing.svg")
+    verdict = check_trajectory(result.trajectory, load_once(str(file)), shown)
     assert verdict.passed, verdict.text()
+    assert f"nothing missing: left out as asked: {told.length_mm:.0f}"[:-1] in verdict.text()
+    assert told.taps == 1
+    for other in (LeftOut(0.9 * told.length_mm, 1), LeftOut(told.length_mm, 0), LeftOut()):
+        (fault,) = check_trajectory(replace(result.trajectory, left_out=other), load_once(str(file)), shown).faults
+        assert fault.check == "nothing missing"
     tips = tips_by_formula(arm_table("drawing_arm"), result.trajectory.positions)
     drawn = [line[:, :2] for line in runs(result.trajectory, tips)]
     on_paper = placed(result.trajectory, shapes)

@@ -17,6 +17,7 @@ from planner.arms.link_clearance import Collision
 from planner.arms.posture_field import posture_field
 from planner.checking.check import check_trajectory
 from planner.cli import main
+from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide
 from planner.pipeline import plan
 from planner.portions import HopPortion, Kit, planned_hops
@@ -75,7 +76,7 @@ def test_a_method_that_runs_into_itself_is_refused_or_left_out(
     assert re.search(r"stroke 2, point \d at .* there would be -\d\.\d\d mm between link q2 and link q4", message)
     assert not output.exists()
     assert main([*arguments, "--skip-unreachable"]) == 0
-    assert "left out whole, as method dls cannot draw them: 1 strokes" in capsys.readouterr().err
+    assert "left out whole, as method dls cannot draw them: 1 stroke" in capsys.readouterr().err
     assert main(["check", str(output), "--arm", arm]) == 0
     assert set(read_trajectory(output).stroke.tolist()) == {TRAVELLING, 0, 1}
 
@@ -110,7 +111,10 @@ def test_strokes_that_no_hop_gets_to_are_refused_or_left_out(drawing: Path, monk
     assert (told.value.stroke, told.value.links, told.value.exit_code) == (2, ("link q2", "link q4"), 3)
     made = plan(drawing, PlanSettings(margin_mm=0.0, skip_unreachable=True), unheard, ALONE)
     assert set(made.trajectory.stroke.tolist()) == {TRAVELLING, 0, 1}
-    assert "left out whole, as links would collide before or after them: 1 strokes" in made.summary.warnings
+    verdict = check_trajectory(made.trajectory, load_once("drawing_arm"), read_drawing(drawing))
+    assert verdict.passed, verdict.text()
+    assert "left out as asked" in verdict.text()
+    assert "left out whole, as links would collide before or after them: 1 stroke" in made.summary.warnings
 
 
 def resting(posture_deg: list[float]) -> Trajectory:

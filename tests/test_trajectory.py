@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planner.errors import OutputError, TrajectoryFileError
+from planner.head import LeftOut, Placement
 from planner.trajectory import TRAVELLING, Trajectory, read_trajectory, write_trajectory, written_aside
 
 AFFINE = (0.0, -0.25, -0.25, 0.0, 133.2, 60.1)
@@ -292,3 +294,61 @@ def test_large_files_are_quick(tmp_path: Path) -> None:
     again = read_trajectory(tmp_path / "large.csv")
     assert time.process_time() - begin < 2.0  # measured 0.4 s
     np.testing.assert_allclose(again.positions, large.positions, rtol=0, atol=0.51e-9)
+
+
+def test_the_decimals_of_each_position_are_counted(tmp_path: Path) -> None:
+    cells = {"1.5": 1, "-12.123456": 6, "3": 0, "0.123456789": 9, "1.25e-3": 5, "2.5E2": 0, " 7.1234567 ": 7, "1e-7": 7,
+             "0.1234567890123456": 16, "+4.": 0}
+    file = tmp_path / "traj.csv"
+    rows = [f"{index / 100:.6f},{cell},0.1234567,0,-1" for index, cell in enumerate(cells)]
+    head = sample(len(rows)).head.text()
+    file.write_text(f"{head}t_s,q1_deg,d2_mm,pen,stroke\n" + "\n".join(rows))
+    trajectory = read_trajectory(file)
+    assert trajectory.decimals is not None
+    assert trajectory.decimals[:, 0].tolist() == list(cells.values())
+    assert set(trajectory.decimals[:, 1].tolist()) == {7}
+    wanted = [0.5 * 10.0**-max(count, 6) for count in cells.values()]
+    np.testing.assert_allclose(trajectory.rounding[:, 0], wanted, atol=4e-13)
+
+
+@given(trajectories())
+def test_what_is_written_is_within_its_rounding(
+        tmp_path_factory: pytest.TempPathFactory, trajectory: Trajectory) -> None:
+    target = tmp_path_factory.getbasetemp() / "rounded.csv"
+    write_trajectory(trajectory, target)
+    read = read_trajectory(target)
+    assert np.all(np.abs(read.positions - trajectory.positions) <= read.rounding)
+    assert read.rounding.max() < 1e-9
+    assert trajectory.line(0) == read.line(0)
+
+
+PLACED = Placement((33.0, 114.5, -93.25, 93.25), 5.0, 1.966, 17.5, mirror=True)
+
+
+@pytest.mark.parametrize("placement", [Placement(), Placement(scale=2.0), Placement(margin_mm=0.0), PLACED])
+@pytest.mark.parametrize("left_out", [LeftOut(), LeftOut(37.25, 2), LeftOut(0.0, 1)])
+def test_the_placement_and_what_was_left_out_are_read_back(
+        placement: Placement, left_out: LeftOut, tmp_path: Path) -> None:
+    written = replace(sample(), placement=placement, left_out=left_out)
+    write_trajectory(written, tmp_path / "traj.csv")
+    read = read_trajectory(tmp_path / "traj.csv")
+    assert (read.placement, read.left_out) == (placement, left_out)
+    assert read.line(3) == written.line(3)
+
+
+@pytest.mark.parametrize(("entry", "reason"), [
+    ("canvas_mm: 1 2 3", r"line 8: '# canvas_mm:' is '1 2 3'; wanted 4 number"),
+    ("margin_mm: wide", r"line 8: '# margin_mm:' is 'wide'"),
+    ("scale: nan", r"line 8: '# scale:' is 'nan'"),
+    ("rotate_deg:", r"line 8: '# rotate_deg:' is ''"),
+    ("mirror: maybe", r"line 8: '# mirror:' is 'maybe'; wanted yes or no"),
+    ("left_out_mm: -1", r"line 8: '# left_out_mm:' is -1"),
+    ("left_out_taps: 1.5", r"line 8: '# left_out_taps:' is 1.5"),
+])
+def test_a_damaged_placement_is_named(entry: str, reason: str, tmp_path: Path) -> None:
+    file = tmp_path / "traj.csv"
+    write_trajectory(sample(), file)
+    lines = file.read_text().splitlines()
+    file.write_text("\n".join([*lines[:7], f"# {entry}", *lines[7:]]) + "\n")
+    with pytest.raises(TrajectoryFileError, match=reason):
+        read_trajectory(file)

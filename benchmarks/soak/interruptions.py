@@ -55,8 +55,8 @@ _DOUBT_S = {Kind.RESET: _SET_POINT_S + _TOLD_S, Kind.KILL_AND_RESET: _SET_POINT_
             Kind.KILL_AND_POWER: 0.75}
 """Of drawing, that may be drawn twice: where the controller lost its memory what was not noted, where it was reset
 while it moved what not all servos had been told, else one set point."""
-_ENDINGS = {Kind.KILL: {-9}, Kind.KILL_AND_RESET: {-9}, Kind.KILL_AND_POWER: {-9}, Kind.HANG_UP: {-1, 0, 130},
-            Kind.TERMINATE: {0, 130, -15}, Kind.CABLE: {4}, Kind.RESET: {4}, Kind.POWER: {4}, Kind.ERRORS: {0, 4},
+_ENDINGS = {Kind.KILL: {-9}, Kind.KILL_AND_RESET: {-9}, Kind.KILL_AND_POWER: {-9}, Kind.HANG_UP: {0, 130},
+            Kind.TERMINATE: {0, 130}, Kind.CABLE: {4}, Kind.RESET: {4}, Kind.POWER: {4}, Kind.ERRORS: {0, 4},
             Kind.DISK: {0, 2}, Kind.SECOND: {0}}
 """Exit codes; those of a run that several things befell are of any of them."""
 
@@ -143,8 +143,8 @@ class Soak:
         for _ in range(_RUNS_PER_DRAWING):
             resume = ["--resume"] if csv.with_name("traj.csv.journal").exists() else []
             strikes_s = controller.now_s() + self._random.uniform(0.0, _STRIKES_WITHIN_S)
-            code, told = Host(controller, ["run", str(csv), "--driver", "native", "--port", "emulated", "--arm",
-                                           str(self._subject.arm_file), "--quiet", *resume],
+            code, told = Host(controller, ["run", str(csv), "--driver", "native", "--port", str(folder / "emulated"),
+                                           "--arm", str(self._subject.arm_file), "--quiet", *resume],
                               folder / "log.txt", self._random.spawn(1)[0], self._kinds, strikes_s).run()
             controller.catch_up()
             kinds = self._note(told, code)

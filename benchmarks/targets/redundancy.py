@@ -14,7 +14,8 @@ from planner.arms.arm_file import load_arm
 from planner.arms.posture_cost import PostureCost
 from planner.arms.posture_course import cheapest_course, course_cost, polished_course
 from planner.arms.posture_field import PostureField, choice_of_postures, posture_field, sharp_course
-from planner.arms.posture_samples import on_ray, usable_postures
+from planner.arms.posture_samples import on_ray
+from planner.arms.posture_tests import usable_postures
 from planner.arms.projection import Pins, project
 from planner.arrays import FloatArray
 from planner.errors import PlanError

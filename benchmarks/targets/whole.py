@@ -105,7 +105,7 @@ def phases_and_order(folder: Path, settings: PlanSettings) -> list[Row]:
         rows.append(Row(
             f"whole drawing, {drawing.stem}", "report", f"{phases.total_s:.1f} s: drawing {phases.drawing_s:.1f},"
             f" lowering {phases.lowering_s:.1f}, lifting {phases.lifting_s:.1f}, travelling {phases.travelling_s:.1f},"
-            f" dwelling {phases.dwelling_s:.1f}; pen up {_pen_up_s(straight):.1f} s in Euclidean order"))
+            f" resting {phases.resting_s:.1f}; pen up {_pen_up_s(straight):.1f} s in Euclidean order"))
     rows.append(Row("pen-up time of all drawings against strokes in Euclidean order", "never longer",
                     f"{total:.1f} s against {straight_total:.1f} s: {total / max(straight_total, 1e-9):.4f}",
                     total <= straight_total * (1 + 1e-9)))

@@ -13,8 +13,10 @@ _HEADER = b"\xff\xff\xfd\x00"
 _BROADCAST = 0xFE
 _PING, _READ, _STATUS, _SYNC_WRITE = 0x01, 0x02, 0x55, 0x83
 _STUFFED, _STUFFING = b"\xff\xff\xfd", b"\xff\xff\xfd\xfd"
-_SHORTEST, _LONGEST = 11, 64
-"""Bytes of an answer to anything that is asked here; a length beyond is noise."""
+STATUS_SIZE = 11
+"""Bytes of an answer, without what was asked for."""
+_LONGEST = 64
+"""An answer that says that it is longer is noise."""
 _CRC16 = 0x8005
 """x^16 + x^15 + x^2 + 1, bits highest first, from 0."""
 _FAULTS = {1: "could not carry out what it was told", 2: "an instruction that it does not know", 3: "a wrong CRC",
@@ -57,7 +59,7 @@ def take_status(received: bytearray) -> Status | None:
         if len(received) < 8:
             return None
         size = int.from_bytes(received[5:7], "little") + 7
-        plausible = received[7] == _STATUS and _SHORTEST <= size <= _LONGEST
+        plausible = received[7] == _STATUS and STATUS_SIZE <= size <= _LONGEST
         if plausible and len(received) < size:
             return None
         packet = bytes(received[:size])

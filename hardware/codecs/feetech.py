@@ -12,8 +12,10 @@ from hardware.codecs.status import Status
 _HEADER = b"\xff\xff"
 _BROADCAST = 0xFE
 _PING, _READ, _SYNC_WRITE = 0x01, 0x02, 0x83
-_SHORTEST, _LONGEST = 6, 64
-"""Bytes of an answer to anything that is asked here; a length beyond is noise."""
+STATUS_SIZE = 6
+"""Bytes of an answer, without what was asked for."""
+_LONGEST = 64
+"""An answer that says that it is longer is noise."""
 _SIGN = 1 << 15
 _FAULTS = ("wrong voltage", "a wrong angle from its sensor", "overheated", "too much current", "", "overloaded")
 
@@ -54,7 +56,7 @@ def take_status(received: bytearray) -> Status | None:
         if len(received) < 4:
             return None
         size = received[3] + 4
-        plausible = received[2] < _BROADCAST and _SHORTEST <= size <= _LONGEST
+        plausible = received[2] < _BROADCAST and STATUS_SIZE <= size <= _LONGEST
         if plausible and len(received) < size:
             return None
         if plausible and received[size - 1] == _checksum(received[2:size - 1]):

@@ -34,12 +34,12 @@ def get_position(channel: int) -> bytes:
     return bytes((_GET_POSITION, channel))
 
 
-def position_us(reply: bytes) -> float:
+def position_us(reply: bytes | bytearray) -> float:
     """The pulse that a reply to `get_position` tells; 0 where the servo has no pulses."""
     return int.from_bytes(reply, "little") * STEP_US
 
 
-def errors(reply: bytes) -> list[str]:
+def errors(reply: bytes | bytearray) -> list[str]:
     """In words, what the reply to GET_ERRORS tells since it was last asked."""
     bits = int.from_bytes(reply, "little")
     return [words for bit, words in enumerate(_ERRORS) if bits >> bit & 1]

@@ -16,6 +16,7 @@ from hardware.codecs.native import End, Fault, Info, Key, Order, Record, Result,
 from hardware.driver import Tally
 from hardware.native.link import Link
 from planner.arrays import FloatArray
+from planner.counted import counted
 from planner.errors import HardwareError
 
 _AHEAD_S = 0.65
@@ -85,8 +86,12 @@ class NativeDriver:
         self._ahead: deque[tuple[int, float]] = deque()  # for each key not reached: set points by its end, duration
         self._merging: tuple[tuple[int, ...], float] | None = None
 
+    def open(self) -> None:
+        if self._line is None:
+            self._line = self._open_line()
+
     def recall(self, earlier: Tally | None) -> int | None:
-        self._open()
+        self.open()
         self._records.clear()
         self._ask(lambda: native.order(Order.RECALL, self._order),
                   lambda: bool(self._records) and self._records[-1].state is not State.RUN)
@@ -99,7 +104,7 @@ class NativeDriver:
         return Tally(self._session, self._keys_reached, math.ceil(self._shortest_key_s / period_s))
 
     def connect(self, pose: FloatArray) -> None:
-        self._open()
+        self.open()
         self._session = int.from_bytes(os.urandom(2), "little") % 0xFFFF + 1
         self._introduce()
         self._understand()
@@ -163,8 +168,8 @@ class NativeDriver:
 
     def statistics(self) -> list[str]:
         counts = self._link.counts
-        return [f"link: {counts.frames} key frames sent, {counts.again} of them again after {counts.gone_back} losses; "
-                f"{self._reader.damaged} damaged frames received",
+        return [f"link: {counted(counts.frames, 'key frame')} sent, {counts.again} of them again (gone back "
+                f"{counted(counts.gone_back, 'time')}); {counted(self._reader.damaged, 'damaged frame')} received",
                 f"under-runs: {self._underruns}"]
 
     def _introduce(self) -> None:
@@ -348,10 +353,6 @@ class NativeDriver:
 
     def _write(self, message: bytes) -> None:
         self._connected().write(message)
-
-    def _open(self) -> None:
-        if self._line is None:
-            self._line = self._open_line()
 
     def _connected(self) -> Transport:
         if self._line is None:

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from hardware.calibration import Calibration
 from hardware.clock import Clock
 from hardware.port import Port
 from planner.arrays import FloatArray
+
+
+class Question(NamedTuple):
+    """A message that asks how a controller fares, and how many bytes its answer has."""
+
+    message: bytes
+    answer_size: int
 
 
 class Controller(Protocol):
@@ -18,6 +25,15 @@ class Controller(Protocol):
 
     usual_baud: int
     calibration: Calibration
+
+    witnesses: int
+    """How many there are that each answer for themselves alone: one board, or every servo of a bus."""
+
+    forgets_resets: bool
+    """Whether nothing tells of a reset any more once the next set point has come. Then a question has to go ahead of
+    the set point, and an answer that fails to come may be all that is ever seen of a reset. Where a reset stays
+    visible, questions go behind, so that nothing else is on a shared line while the answer comes, and noise may
+    take a few of them."""
 
     def attach(self, port: Port, values: FloatArray, clock: Clock) -> FloatArray:
         """Make sure that everything answers, and power the servos; where they then stand.
@@ -34,11 +50,11 @@ class Controller(Protocol):
     def halt(self, port: Port) -> None:
         """The servos hold where they are."""
 
-    def question(self) -> bytes:
-        """The message that asks how it fares: about one thing at a time, by turns."""
+    def question(self, witness: int) -> Question:
+        """What asks witness 0, 1, ... how it fares."""
 
-    def take_answer(self, received: bytearray) -> bool:
-        """Whether the whole answer to the last question has come; it is taken from `received`.
+    def take_answer(self, witness: int, received: bytearray) -> bool:
+        """Whether the whole answer to `question(witness)` has come; it is taken from `received`.
 
-        Errors: HardwareError where the answer is a fault.
+        Errors: HardwareError where the answer is a fault, or tells of a reset.
         """

@@ -8,39 +8,41 @@ from hardware.clock import Clock
 from hardware.gentle_move import come_from
 from hardware.port import Line, Port
 from hardware.streaming.controller import Controller
+from hardware.streaming.witness import Witness, fits, seconds
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
+from planner.counted import counted
 from planner.errors import HardwareError
 
 _COMING_PERIOD_S = 0.02
-_ASK_EVERY_S = 0.5
-_PATIENCE_S = 1.0
-_UNANSWERED = 3
-"""So many questions in a row without an answer, and nobody is there. One may be lost to noise."""
-_LAST_CHANCE_S = 0.25
-_LONGEST_ANSWER = 256
 
 
 class StreamingDriver:
-    """Sends set points as they come, and asks in between how the controller fares without waiting for the answer."""
+    """Sends set points as they come, and asks in between how the controller fares without waiting for the answer.
+
+    What is `executed` is what an answer proves: see hardware/streaming/witness.py.
+    """
 
     ahead_s = 0.0
 
     def __init__(self, arm: Arm, controller: Controller, line: Line, clock: Clock) -> None:
         self._arm, self._controller, self._line, self._clock = arm, controller, line, clock
         self._port: Port | None = None
-        self._reached_s = -math.inf
-        self._sent = self._bytes = self._asked = self._answered = self._unanswered = 0
-        self._received = bytearray()
-        self._asked_s: float | None = None
-        self._ask_s = -math.inf
+        self._witness = Witness(controller)
+        self._reached_s = self._free_s = -math.inf
+        self._sent = self._bytes = 0
+
+    def open(self) -> None:
+        if self._port is None:
+            self._port = self._line.open(self._controller.usual_baud)
 
     def connect(self, pose: FloatArray) -> None:
         values = self._controller.calibration.to_servos(pose)
-        self._port = self._line.open(self._controller.usual_baud)
-        self._port.discard_input()
-        self._come_from(self._controller.attach(self._port, values, self._clock), pose)
-        self._controller.confirm(self._port, values, self._clock)
+        self.open()
+        port = self._connected()
+        port.discard_input()
+        self._come_from(self._controller.attach(port, values, self._clock), pose)
+        self._controller.confirm(port, values, self._clock)
 
     def send(self, positions: FloatArray, duration_s: float) -> None:
         port = self._connected()
@@ -49,19 +51,23 @@ class StreamingDriver:
             raise HardwareError(
                 f"{port.name}: a set point is {port.seconds(len(message)) * 1e3:.3g} ms on the line and "
                 f"{duration_s * 1e3:.3g} ms are between two; set controller and --baud to a higher speed")
+        self._clock.sleep_until(self._free_s)  # what servos say on a line that they share is not spoken over
         now_s = self._clock.now_s()
-        message += self._question(port, now_s)
+        self._witness.listen(port, now_s)
+        if self._sent and self._witness.due(now_s):
+            message = self._with_question(port, message, duration_s, now_s)
         port.write(message)
         self._sent += 1
         self._bytes += len(message)
         self._reached_s = now_s + duration_s
 
     def executed(self) -> int:
-        return self._sent
+        return self._witness.proven
 
     def flush(self) -> None:
-        self._connected()
-        self._clock.sleep_until(self._reached_s)
+        port = self._connected()
+        self._clock.sleep_until(max(self._reached_s, self._free_s))
+        self._witness.make_sure(port, self._clock.now_s(), self._sent)
 
     def emergency_stop(self) -> None:
         if self._port is not None:
@@ -73,8 +79,8 @@ class StreamingDriver:
             self._port = None
 
     def statistics(self) -> list[str]:
-        return [f"{self._sent} set points in {self._bytes} bytes; the controller answered {self._answered} of "
-                f"{self._asked} questions about how it fares"]
+        return [f"{counted(self._sent, 'set point')} in {counted(self._bytes, 'byte')}; the controller answered "
+                f"{self._witness.answered} of {counted(self._witness.asked, 'question')} about how it fares"]
 
     def _connected(self) -> Port:
         if self._port is None:
@@ -90,28 +96,11 @@ class StreamingDriver:
             self._clock.sleep_until(start_s + k * _COMING_PERIOD_S)
             self._connected().write(self._controller.set_point(values, _COMING_PERIOD_S))
 
-    def _question(self, port: Port, now_s: float) -> bytes:
-        """The question that is due now, if any, once the one before is answered or given up."""
-        self._received += port.read(_LONGEST_ANSWER)
-        if self._asked_s is not None:
-            self._note_answer(port, waited_s=now_s - self._asked_s)
-        if self._asked_s is not None or now_s < self._ask_s:
-            return b""
-        self._received.clear()
-        self._asked_s, self._ask_s = now_s, now_s + _ASK_EVERY_S
-        self._asked += 1
-        return self._controller.question()
-
-    def _note_answer(self, port: Port, waited_s: float) -> None:
-        if not self._controller.take_answer(self._received):
-            if waited_s <= _PATIENCE_S:
-                return
-            self._unanswered += 1
-            if self._unanswered < _UNANSWERED:
-                self._asked_s = None
-                return
-            self._received += port.read(_LONGEST_ANSWER, _LAST_CHANCE_S)
-            if not self._controller.take_answer(self._received):
-                raise HardwareError(f"{port.name}: the controller no longer answers; check its cable and its power")
-        self._asked_s, self._unanswered = None, 0
-        self._answered += 1
+    def _with_question(self, port: Port, message: bytes, duration_s: float, now_s: float) -> bytes:
+        """A set point and a question, which asks of those sent before: they have had their time to be reached."""
+        question = self._witness.next_question()
+        self._witness.asked_now(now_s, self._sent, rarely=not fits(port, message, question, duration_s))
+        self._free_s = now_s + seconds(port, message, question)
+        if self._controller.forgets_resets:
+            return question.message + message
+        return message + question.message

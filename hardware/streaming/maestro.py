@@ -10,6 +10,7 @@ from hardware.calibration import pulse_calibration
 from hardware.clock import Clock
 from hardware.codecs import maestro
 from hardware.port import Port
+from hardware.streaming.controller import Question
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError
@@ -24,6 +25,8 @@ class Maestro:
     """A Controller. with_crc: the board's setting "Enable CRC" is on."""
 
     usual_baud = 115_200  # over USB any will do
+    witnesses = 1
+    forgets_resets = True
 
     def __init__(self, arm: Arm, *, with_crc: bool = False) -> None:
         self.calibration = pulse_calibration(arm)
@@ -63,15 +66,20 @@ class Maestro:
                             for channel, pulse_us in zip(self.calibration.addresses, present_us, strict=True)
                             if pulse_us))
 
-    def question(self) -> bytes:
-        return self._seal(maestro.GET_ERRORS)
+    def question(self, witness: int) -> Question:
+        """Its errors, and the pulse of one servo: a board that was reset gives none until it is told anew."""
+        ask_position = maestro.get_position(self.calibration.addresses[0])
+        return Question(self._seal(maestro.GET_ERRORS) + self._seal(ask_position), 2 * maestro.REPLY_SIZE)
 
-    def take_answer(self, received: bytearray) -> bool:
-        if len(received) < maestro.REPLY_SIZE:
+    def take_answer(self, witness: int, received: bytearray) -> bool:
+        if len(received) < 2 * maestro.REPLY_SIZE:
             return False
-        reply = bytes(received[:maestro.REPLY_SIZE])
+        errors, position = received[:maestro.REPLY_SIZE], received[maestro.REPLY_SIZE:2 * maestro.REPLY_SIZE]
         received.clear()
-        _complain(reply)
+        _complain(errors)
+        if not maestro.position_us(position):
+            raise HardwareError("the Maestro was reset in the middle of the run; check its power, lift the pen, put "
+                                "the arm to where it parks, and go on with --resume")
         return True
 
     def _position_us(self, port: Port, channel: int) -> float:
@@ -86,7 +94,7 @@ class Maestro:
         return reply
 
 
-def _complain(reply: bytes) -> None:
+def _complain(reply: bytes | bytearray) -> None:
     errors = maestro.errors(reply)
     if errors:
         raise HardwareError(f"the Maestro reports {', '.join(errors)}; see its Serial settings in the Maestro Control "

@@ -12,6 +12,7 @@ from hardware.calibration import count_calibration
 from hardware.clock import Clock
 from hardware.codecs.status import Status
 from hardware.port import Port
+from hardware.streaming.controller import Question
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError
@@ -29,7 +30,10 @@ _POLLS = 40
 
 
 class Language(Protocol):
-    """A codec of bus servos, as a module."""
+    """A codec of bus servos, as a module. STATUS_SIZE: bytes of an answer without what was asked for."""
+
+    @property
+    def STATUS_SIZE(self) -> int: ...
 
     def ping(self, servo: int) -> bytes: ...
     def read(self, servo: int, register: int, size: int) -> bytes: ...
@@ -53,15 +57,17 @@ class Registers:
 
 
 class ServoBus:
-    """A Controller."""
+    """A Controller. A servo that was reset has no torque, until it is attached anew."""
+
+    forgets_resets = False
 
     def __init__(self, arm: Arm, language: Language, registers: Registers, usual_baud: int) -> None:
         self.usual_baud = usual_baud
         self.calibration = count_calibration(arm)
+        self.witnesses = arm.n_joints
         self._joints = dict(zip(self.calibration.addresses, (joint.name for joint in arm.joints), strict=True))
         self._language, self._registers = language, registers
         self._word_size = len(language.word(0))
-        self._asked = 0
 
     def attach(self, port: Port, values: FloatArray, clock: Clock) -> FloatArray:
         silent = [servo for servo in self._joints if self._ask(port, servo, self._language.ping(servo)) is None]
@@ -97,14 +103,16 @@ class ServoBus:
         for patience_s in _HALT_S:
             moving = [servo for servo in moving if not self._held(port, servo, patience_s)]
 
-    def question(self) -> bytes:
-        """Of one servo after another, whether it still has torque; any answer tells its faults as well."""
-        self._asked += 1
-        servo = self.calibration.addresses[self._asked % len(self._joints)]
-        return self._language.read(servo, self._registers.torque, 1)
+    def question(self, witness: int) -> Question:
+        """Of one servo, whether it still has torque; any answer tells its faults as well."""
+        servo = self.calibration.addresses[witness]
+        return Question(self._language.read(servo, self._registers.torque, 1), self._language.STATUS_SIZE + 1)
 
-    def take_answer(self, received: bytearray) -> bool:
+    def take_answer(self, witness: int, received: bytearray) -> bool:
+        servo = self.calibration.addresses[witness]
         status = self._language.take_status(received)
+        while status is not None and (status.servo != servo or len(status.data) != 1):  # to a question given up before
+            status = self._language.take_status(received)
         if status is None:
             return False
         self._complain(status)

@@ -6,6 +6,7 @@ from hardware.calibration import pulse_calibration
 from hardware.clock import Clock
 from hardware.codecs import ssc32
 from hardware.port import Port
+from hardware.streaming.controller import Question
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError
@@ -24,6 +25,8 @@ class Ssc32:
     """A Controller."""
 
     usual_baud = 115_200
+    witnesses = 1
+    forgets_resets = True
 
     def __init__(self, arm: Arm) -> None:
         self.calibration = pulse_calibration(arm)
@@ -57,10 +60,11 @@ class Ssc32:
     def halt(self, port: Port) -> None:
         port.write(ssc32.stop(self.calibration.addresses))
 
-    def question(self) -> bytes:
-        return ssc32.IS_MOVING
+    def question(self, witness: int) -> Question:
+        """Nothing that it answers tells of a reset: all that shows is a question that it was not there to answer."""
+        return Question(ssc32.IS_MOVING, 1)
 
-    def take_answer(self, received: bytearray) -> bool:
+    def take_answer(self, witness: int, received: bytearray) -> bool:
         answered = any(bytes((byte,)) in (ssc32.MOVING, ssc32.RESTING) for byte in received)
         received.clear()
         return answered

@@ -58,13 +58,15 @@ class Servo:
 class BusServo:
     """The servo behind a joint, where it is one on a bus: count = count_at_zero + counts_per_unit * position.
 
-    Position in rad or mm; `id` is its number on the bus.
+    Position in rad or mm; `id` is its number on the bus. backlash: rad or mm.
     """
 
     id: int
     count_at_zero: float
     counts_per_unit: float
     count_range: tuple[int, int]
+    dead_band_counts: float = 0.0
+    backlash: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

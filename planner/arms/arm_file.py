@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, Field, ValidationError, model_validator
+from pydantic import AfterValidator, Field, ValidationError, model_validator
 
 from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Workspace
-from planner.arms.file_section import NotNegative, Number, Positive, Section
+from planner.arms.file_section import LONGEST_MM, Length, Limit, Number, Section, Size, told
 from planner.arms.servo_section import (
     SlidingBusSection,
     SlidingServoSection,
@@ -26,6 +26,8 @@ from planner.errors import ArmFileError, UnknownArm
 
 DEFAULT_ARM = "drawing_arm"
 
+_ROBOT_DESCRIPTIONS = (".urdf", ".xacro", ".sdf", ".mjcf", ".xml")
+
 _ROUNDING = 1e-9
 """Degrees that converting to radians and back may cost."""
 
@@ -36,15 +38,19 @@ def _is_column_name(name: str) -> str:
     return name
 
 
-Name = Annotated[str, AfterValidator(_is_column_name)]
+Name = Annotated[str, Field(max_length=64), AfterValidator(_is_column_name)]
+_MOST_JOINTS = 16
+_MOST_BYTES = 1_000_000
+_MOST_FAULTS = 20
+
 
 class _JointBase(Section):
     name: Name
     theta_deg: Number = 0.0
-    d_mm: Number = 0.0
-    a_mm: Number = 0.0
+    d_mm: Length = 0.0
+    a_mm: Length = 0.0
     alpha_deg: Number = 0.0
-    thickness_mm: Positive | None = None
+    thickness_mm: Size | None = None
 
     @property
     @abstractmethod
@@ -63,9 +69,9 @@ class _RevoluteSection(_JointBase):
     kind: Literal["revolute"]
     min_deg: Number
     max_deg: Number
-    max_velocity_deg_s: Positive
-    max_acceleration_deg_s2: Positive
-    max_jerk_deg_s3: Positive
+    max_velocity_deg_s: Limit
+    max_acceleration_deg_s2: Limit
+    max_jerk_deg_s3: Limit
     servo: TurningServoSection | None = None
     bus: TurningBusSection | None = None
 
@@ -82,11 +88,11 @@ class _RevoluteSection(_JointBase):
 
 class _PrismaticSection(_JointBase):
     kind: Literal["prismatic"]
-    min_mm: Number
-    max_mm: Number
-    max_velocity_mm_s: Positive
-    max_acceleration_mm_s2: Positive
-    max_jerk_mm_s3: Positive
+    min_mm: Length
+    max_mm: Length
+    max_velocity_mm_s: Limit
+    max_acceleration_mm_s2: Limit
+    max_jerk_mm_s3: Limit
     servo: SlidingServoSection | None = None
     bus: SlidingBusSection | None = None
 
@@ -104,8 +110,8 @@ class _CouplingSection(Section):
 class _PenSection(Section):
     hold: Literal["coupling", "construction", "tool_axis", "free"]
     tool_axis: Annotated[list[Number], Field(min_length=3, max_length=3)] = Field(default=[1.0, 0.0, 0.0])
-    lift_mm: Positive
-    clearance_mm: Positive = 1.0
+    lift_mm: Size
+    clearance_mm: Size = 1.0
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
@@ -117,8 +123,8 @@ class _PenSection(Section):
 
 
 class _WorkspaceSection(Section):
-    inner_radius_mm: NotNegative
-    min_tip_speed_mm_s: Positive = 80.0
+    inner_radius_mm: Annotated[Length, Field(ge=0)]
+    min_tip_speed_mm_s: Limit = 80.0
 
 
 class _ArmSection(Section):
@@ -128,7 +134,8 @@ class _ArmSection(Section):
     pen: _PenSection
     workspace: _WorkspaceSection
     joints: Annotated[
-        list[Annotated[_RevoluteSection | _PrismaticSection, Field(discriminator="kind")]], Field(min_length=1)
+        list[Annotated[_RevoluteSection | _PrismaticSection, Field(discriminator="kind")]],
+        Field(min_length=1, max_length=_MOST_JOINTS)
     ]
     coupling: list[_CouplingSection] = Field(default=[])
     park: dict[str, Number] | None = None
@@ -153,6 +160,9 @@ def load_arm(name_or_file: str) -> Arm:
     """
     if name_or_file.endswith(".toml"):
         return read_arm_file(Path(name_or_file))
+    if name_or_file.lower().endswith(_ROBOT_DESCRIPTIONS):
+        raise ArmFileError(name_or_file, ["robot descriptions (URDF, xacro) are not read yet; write the joints as rows"
+                                          " of a Denavit-Hartenberg table into a .toml file"])
     if name_or_file not in known_arms():
         raise UnknownArm(name_or_file, known_arms())
     return read_arm_file(arms_folder() / f"{name_or_file}.toml")
@@ -161,7 +171,7 @@ def load_arm(name_or_file: str) -> Arm:
 def read_arm_file(path: Path) -> Arm:
     """Read, check and convert one arm file. Errors: ArmFileError with all faults."""
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(_text(path))
     except OSError as error:
         raise ArmFileError(str(path), [f"cannot be read: {error.strerror}"]) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
@@ -171,7 +181,7 @@ def read_arm_file(path: Path) -> Arm:
     try:
         section = _ArmSection.model_validate(content)
     except ValidationError as error:
-        raise ArmFileError(str(path), [_fault(detail) for detail in error.errors()]) from error
+        raise ArmFileError(str(path), _faults(error, content)) from error
     faults = _contradictions(section)
     if faults:
         raise ArmFileError(str(path), faults)
@@ -185,18 +195,27 @@ def read_arm_file(path: Path) -> Arm:
     return replace(arm, park=parked)
 
 
-def _fault(detail: Any) -> str:
-    """One pydantic complaint as `key: what is wrong (value)`."""
-    key = ""
-    for part in detail["loc"]:
-        if part in ("revolute", "prismatic"):  # the union's tag, which is no key of the file
-            continue
-        key += f"[{part}]" if isinstance(part, int) else (f".{part}" if key else str(part))
-    message = {"extra_forbidden": "unknown key", "missing": "missing"}.get(detail["type"], detail["msg"])
-    message = message.removeprefix("Value error, ")
-    # A whole section says less than what is wrong with it.
-    is_section = isinstance(detail["input"], dict | BaseModel)
-    return f"{key}: {message}" + ("" if is_section else f" (value: {detail['input']!r:.60})")
+def _text(path: Path) -> str:
+    """Errors: OSError, ArmFileError where it cannot be an arm file, whatever it says."""
+    if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe would be waited for
+        raise ArmFileError(str(path), ["is not a regular file"])
+    if path.is_file() and path.stat().st_size > _MOST_BYTES:
+        raise ArmFileError(str(path), [f"is not an arm: it has more than {_MOST_BYTES} bytes"])
+    return path.read_text(encoding="utf-8")
+
+
+def _faults(error: ValidationError, content: dict[str, Any]) -> list[str]:
+    """What is wrong, fault by fault; those of a joint say its name too, as nobody counts joints from zero."""
+    faults = []
+    for detail in error.errors(include_url=False)[:_MOST_FAULTS]:
+        key, sentence = told(detail)
+        place = detail["loc"][1] if detail["loc"][:1] == ("joints",) and len(detail["loc"]) > 1 else None
+        section = content["joints"][place] if isinstance(place, int) else None
+        name = section.get("name") if isinstance(section, dict) else None
+        whose = f", joint {name:.64}" if isinstance(name, str) and name else ""
+        faults.append(f"{key}: {sentence}{whose}")
+    more = error.error_count() - len(faults)
+    return faults + ([f"and {more} more"] if more > 0 else [])
 
 
 def _contradictions(section: _ArmSection) -> list[str]:
@@ -206,6 +225,11 @@ def _contradictions(section: _ArmSection) -> list[str]:
     for index, joint in enumerate(section.joints):
         if names.index(joint.name) != index:
             faults.append(f"joints[{index}].name: '{joint.name}' is used twice")
+    together_mm = sum(abs(joint.d_mm) + abs(joint.a_mm) + (
+        max(map(abs, joint.limits)) if isinstance(joint, _PrismaticSection) else 0.0) for joint in section.joints)
+    if together_mm > LONGEST_MM:
+        faults.append(f"joints: their lengths (d_mm, a_mm and what slides) are {together_mm:g} mm together, more than"
+                      f" {LONGEST_MM:g} mm")
     driven = [coupling.joint for coupling in section.coupling]
     for index, coupling in enumerate(section.coupling):
         key = f"coupling[{index}]"

@@ -13,7 +13,7 @@ from functools import lru_cache
 import casadi
 import numpy as np
 
-from planner.arms.arm import Arm
+from planner.arms.arm import Arm, JointKind
 from planner.arms.kinematics import kinematics_of
 from planner.arms.link_clearance import KEPT_MM, link_clearance
 from planner.arms.posture_field import PostureField, posture_sheets, within_limits
@@ -30,13 +30,18 @@ _HEIGHTS = 7
 @dataclass(frozen=True, slots=True)
 class Canvas:
     """An axis-aligned rectangle of paper in arm millimetres: near and far are distances from the base along
-    x, right and left are the y of its sides."""
+    x, right and left are the y of its sides. Errors: PlanError where that is no rectangle."""
 
     kind: CanvasKind
     near_mm: float
     far_mm: float
     right_mm: float
     left_mm: float
+
+    def __post_init__(self) -> None:
+        if not (0 < self.width_mm < np.inf and 0 < self.height_mm < np.inf):
+            raise PlanError(f"there is no {self.kind} canvas: it would be {self.width_mm:g} mm wide and"
+                            f" {self.height_mm:g} mm high; try another --canvas")
 
     @property
     def width_mm(self) -> float:
@@ -62,20 +67,26 @@ class Canvas:
 
 def documented_canvas(r_max_mm: float, r_min_mm: float) -> Canvas:
     """The documents' rectangle: near side tangent to the inner circle, far corners on the outer one, half
-    angle acos(sqrt(2)/r) - 45 degrees with r = r_max/r_min (seed document on the kinematics, drawing limits)."""
-    ratio = r_max_mm / r_min_mm
-    if ratio < np.sqrt(2):
-        raise PlanError(f"no documented canvas: the outer radius {r_max_mm:.1f} mm is less than"
-                        f" {np.sqrt(2):.3f} times the inner radius {r_min_mm:.1f} mm")
-    return _tangent_canvas(CanvasKind.DOCUMENTED, r_max_mm, r_min_mm, float(np.arccos(np.sqrt(2) / ratio) - np.pi / 4))
+    angle acos(sqrt(2)/r) - 45 degrees with r = r_max/r_min (seed document on the kinematics, drawing limits).
+    Errors: PlanError up to r = 2, where that angle is not above zero."""
+    inner = _share(CanvasKind.DOCUMENTED, r_max_mm, r_min_mm, 2.0)
+    return _tangent_canvas(CanvasKind.DOCUMENTED, r_max_mm, r_min_mm, float(np.arccos(np.sqrt(2) * inner) - np.pi / 4))
 
 
 def optimal_canvas(r_max_mm: float, r_min_mm: float) -> Canvas:
     """The rectangle of largest area of the same kind: cos(half angle) = (1 + sqrt(1 + 8 r^2)) / (4 r), the
-    root of the derivative of the area that the documents misprint."""
-    ratio = r_max_mm / r_min_mm
+    root of the derivative of the area that the documents misprint. Errors: PlanError where there is no ring."""
+    inner = _share(CanvasKind.OPTIMAL, r_max_mm, r_min_mm, 1.0)
     return _tangent_canvas(CanvasKind.OPTIMAL, r_max_mm, r_min_mm,
-                           float(np.arccos((1 + np.sqrt(1 + 8 * ratio ** 2)) / (4 * ratio))))
+                           float(np.arccos((inner + np.hypot(inner, np.sqrt(8))) / 4)))
+
+
+def _share(kind: CanvasKind, r_max_mm: float, r_min_mm: float, least: float) -> float:
+    """1/r, which there is for a ring without a hole too. Errors: PlanError where r is not above its least value."""
+    if not least * r_min_mm < r_max_mm < np.inf:
+        raise PlanError(f"no {kind} canvas: the outer radius {r_max_mm:.1f} mm is not above {least:g} times the inner"
+                        f" radius {r_min_mm:.1f} mm; try another --canvas")
+    return r_min_mm / r_max_mm
 
 
 def _tangent_canvas(kind: CanvasKind, r_max_mm: float, r_min_mm: float, half_angle_rad: float) -> Canvas:
@@ -85,17 +96,21 @@ def _tangent_canvas(kind: CanvasKind, r_max_mm: float, r_min_mm: float, half_ang
 
 @lru_cache(maxsize=16)
 def geometric_reach_mm(arm: Arm) -> float:
-    """Largest distance from the base axis at which the pen, held as the arm holds it, touches the paper,
-    joint limits aside. For the drawing arm sqrt((L2+L3+L4)^2 - (L5-L1)^2): minus, where the documents
-    print plus."""
+    """Largest distance from the base axis at which the pen, held as the arm holds it, touches the paper, limits of
+    turning joints aside: how far a joint slides is a length of the arm. For the drawing arm
+    sqrt((L2+L3+L4)^2 - (L5-L1)^2): minus, where the documents print plus."""
     kinematics = kinematics_of(arm)
     sheets = posture_sheets(arm)
     outermost = max(sheets, key=lambda sheet: sheet.radii_mm[-1])
     solver = casadi.nlpsol("reach", "ipopt", {
         "x": kinematics.free, "f": -(kinematics.tip[0] / 100), "g": kinematics.task[1:]},
-        {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False})
-    solution = solver(x0=outermost.postures[-1], lbg=0, ubg=0)
-    return max(float(-solution["f"]) * 100, float(outermost.radii_mm[-1]))
+        {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False, "error_on_fail": False})
+    slides = kinematics.free_of(np.array([joint.kind is JointKind.PRISMATIC for joint in arm.joints]))
+    solution = solver(x0=outermost.postures[-1], lbg=0, ubg=0,
+                      lbx=np.where(slides, kinematics.free_of(arm.minimum), -np.inf),
+                      ubx=np.where(slides, kinematics.free_of(arm.maximum), np.inf))
+    found_mm = float(-solution["f"]) * 100 if solver.stats()["success"] else -np.inf
+    return max(found_mm, float(outermost.radii_mm[-1]))
 
 
 @lru_cache(maxsize=16)

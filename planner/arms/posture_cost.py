@@ -10,7 +10,7 @@ With d_j = |dq_j / d rho| / speed_j, in units of the arm's own quickness, the co
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cached_property
 
 import casadi
@@ -25,6 +25,10 @@ from planner.settings import PostureWeights
 _SENSITIVITY, _REVERSALS, _LIMITS = 20.0, 4.0, 0.5
 """Against 1 for time: with these, equal weights improve all three figures of the drawing arm against damped least
 squares (docs/postures.md holds the trade-off)."""
+
+_LEAST_TIME = 0.05
+"""Of the greatest weight, what time weighs at least. Where motion has no price, a joint that changes nothing else jumps
+from one end of its range to the other, and no pen can be led over such a place."""
 
 _TURNS_POWER = 0.7
 """A drawing comes nearer and goes away again far more often by a little than by much, and a joint with slope d turns
@@ -68,6 +72,7 @@ class PostureCost:
     def steps(self, steps: FloatArray, length_mm: float) -> FloatArray:
         """(...) cost densities of joint steps (..., n_joints) over a radial length."""
         slope = np.abs(steps) * (self.quickness_mm_s / length_mm / self._arm.max_velocity)
-        cost: FloatArray = (self.weights.time * slope.max(axis=-1) ** 2
+        time = max(self.weights.time, _LEAST_TIME * max(astuple(self.weights)))
+        cost: FloatArray = (time * slope.max(axis=-1) ** 2
                             + self.weights.reversals * _REVERSALS * (slope ** _TURNS_POWER).sum(axis=-1))
         return cost

@@ -12,7 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 from planner.arms.posture_cost import PostureCost
-from planner.arms.posture_samples import COARSE_STEP_MM, usable_postures
+from planner.arms.posture_samples import COARSE_STEP_MM
+from planner.arms.posture_tests import usable_postures
 from planner.arms.projection import Pins, project
 from planner.arrays import BoolArray, FloatArray
 

@@ -17,16 +17,11 @@ import numpy as np
 
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.kinematics import Kinematics, kinematics_of
-from planner.arms.link_clearance import link_clearance
 from planner.arms.posture_cost import PostureCost
 from planner.arms.posture_course import cheapest_course, polished_course, smoothed_course
-from planner.arms.posture_samples import (
-    COARSE_STEP_MM,
-    on_ray,
-    sampled_rays,
-    slowest_direction_mm_s,
-    stretched_to_edges,
-)
+from planner.arms.posture_refusal import no_usable_posture
+from planner.arms.posture_samples import COARSE_STEP_MM, on_ray, sampled_rays, stretched_to_edges
+from planner.arms.posture_tests import slowest_direction_mm_s
 from planner.arms.projection import project
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.errors import ArmFileError, PlanError
@@ -38,6 +33,8 @@ _UPRIGHT_PROBES = 16
 _FEWEST_RADII = 2
 """Sampled radii that a further sheet has to add."""
 _NODES = 81
+_LEAST_RING_MM = 1.0
+"""No course can be laid through less."""
 _ROUNDING_MM = 2.0
 """Corners, where one joint comes to rest and another starts, become bends: the standard deviation of the weights."""
 _DEGREE = 5
@@ -164,17 +161,22 @@ def choice_of_postures(arm: Arm, weights: PostureWeights) -> tuple[PostureCost, 
     Errors: as `posture_field`."""
     first = arm.joints[0]
     if first.kind is not JointKind.REVOLUTE or 0 not in arm.free_joints:
-        raise PlanError(f"arm {arm.name}: method 'path' needs a first joint that turns about the vertical axis")
+        what = "slides" if first.kind is JointKind.PRISMATIC else "is driven by a coupling"
+        raise PlanError(f"arm {arm.name} cannot be planned for: its first joint, {first.name}, {what}, and it has to be"
+                        " one that turns about the vertical by itself, as the canvas and all postures are found along"
+                        " one line from the base and turned from there")
     if any(other == 0 for coupling in arm.couplings for other, _ in coupling.coefficients):
         raise PlanError(f"arm {arm.name}: joint {first.name} turns the arm about the vertical axis;"
                         " no coupling may depend on it")
     kinematics = kinematics_of(arm)
+    if kinematics.n_redundant < 0:
+        pointed = ", and pointed," if arm.pen.hold is PenHold.TOOL_AXIS else ""
+        raise PlanError(f"arm {arm.name} cannot be planned for: to have its pen held{pointed} anywhere on the paper"
+                        f" takes {kinematics.n_task} joints that move by themselves, and it has {kinematics.n_free}")
     _require_upright(kinematics)
     radii, samples = sampled_rays(kinematics)
     if not any(len(postures) for postures in samples):
-        raise PlanError(f"arm {arm.name}: no posture within the joint limits puts the pen on the paper"
-                        f" at {arm.workspace.inner_radius_mm:g} mm or more from the base axis, with room to lift it by"
-                        f" {arm.pen.lift_mm:g} mm" + (" and the links apart" if link_clearance(arm).names else ""))
+        raise no_usable_posture(kinematics)
     quickness = float(np.median(slowest_direction_mm_s(kinematics, np.concatenate(samples))))
     return PostureCost(kinematics, weights, quickness, float(radii[-1])), radii, samples
 
@@ -185,6 +187,10 @@ def sharp_course(cost: PostureCost, radii_mm: FloatArray, samples: list[FloatArr
     course through the samples leaves its branch between them."""
     kinematics = cost.kinematics
     radii, postures = stretched_to_edges(kinematics, *cheapest_course(cost, radii_mm, samples, wanted))
+    if radii[-1] - radii[0] < _LEAST_RING_MM:
+        raise PlanError(f"arm {kinematics.arm.name}: the pen gets to the paper only at {radii[0]:.1f} mm from the base"
+                        f" axis, in a ring less than {_LEAST_RING_MM:g} mm wide; widen the joint limits, or check d_mm,"
+                        " a_mm and workspace.inner_radius_mm")
     outer = radii[-1] + _EDGE_MM
     nodes = outer - np.linspace(np.sqrt(outer - radii[0]), np.sqrt(_EDGE_MM), _NODES) ** 2
     nodes[0], nodes[-1] = radii[0], radii[-1]

@@ -12,6 +12,10 @@ from planner.arrays import BoolArray, FloatArray, IntArray
 RESIDUAL_MM = 1e-9
 """A posture is exact where its task misses by less than this (mm, or 1e-9 rad of pointing)."""
 
+_DAMPING = 1e-12
+"""Of each equation's own size: millimetres and radians stand side by side, and what is little to a tip that moves by a
+metre would hold the pointing of its pen off its target."""
+
 _STILL_RAD = 1e-11
 """Iteration goes on while a posture still moves by more than this, in rad or mm: a target is met long before the
 posture nearest to its reference is found."""
@@ -69,7 +73,7 @@ def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *
         wanted = miss + np.einsum("nij,nj->ni", jacobian, offset)
         weighted = jacobian * squared_scale
         gram = np.einsum("nij,nkj->nik", weighted, jacobian)
-        gram += 1e-12 * np.trace(gram, axis1=1, axis2=2)[:, None, None] * np.eye(gram.shape[1])
+        gram += _damping(gram)
         multiplier = np.linalg.solve(gram, wanted[:, :, None])
         change = np.einsum("nij,ni->nj", weighted, multiplier[:, :, 0]) - offset
         # A step of more than a quarter turn says that the linearisation is meaningless there.
@@ -81,3 +85,12 @@ def project(kinematics: Kinematics, reference: FloatArray, tip_mm: FloatArray, *
         task, _ = task_at(active)
         best[active] = np.abs(target[active] - task).max(axis=1, initial=0.0)
     return solution, best <= 100 * RESIDUAL_MM
+
+
+def _damping(gram: FloatArray) -> FloatArray:
+    """(n, k, k) diagonals that keep Gram matrices (n, k, k) from being singular, an equation that no joint can change
+    included."""
+    sizes = np.einsum("nii->ni", gram)
+    least = _DAMPING * sizes.sum(axis=1, keepdims=True)
+    damping: FloatArray = _DAMPING * np.maximum(sizes, least)[:, :, None] * np.eye(gram.shape[1])
+    return damping

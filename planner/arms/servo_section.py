@@ -126,11 +126,17 @@ class _BusSection(Section):
     id: Annotated[int, Field(ge=0, le=252)]
     count_at_zero: Number
     count_range: _CountRange
+    dead_band_counts: NotNegative = 0.0
 
     @property
     @abstractmethod
     def slope(self) -> float:
         """Counts per unit of the file."""
+
+    @property
+    @abstractmethod
+    def play(self) -> float:
+        """Backlash in the unit of the file."""
 
     @model_validator(mode="after")
     def _moves(self) -> Self:
@@ -140,20 +146,31 @@ class _BusSection(Section):
 
     def servo(self, per_file_unit: float) -> BusServo:
         low, high = self.count_range
-        return BusServo(self.id, self.count_at_zero, self.slope / per_file_unit, (low, high))
+        return BusServo(self.id, self.count_at_zero, self.slope / per_file_unit, (low, high), self.dead_band_counts,
+                        self.play * per_file_unit)
 
 
 class TurningBusSection(_BusSection):
     counts_per_deg: Number
+    backlash_deg: NotNegative = 0.0
 
     @property
     def slope(self) -> float:
         return self.counts_per_deg
 
+    @property
+    def play(self) -> float:
+        return self.backlash_deg
+
 
 class SlidingBusSection(_BusSection):
     counts_per_mm: Number
+    backlash_mm: NotNegative = 0.0
 
     @property
     def slope(self) -> float:
         return self.counts_per_mm
+
+    @property
+    def play(self) -> float:
+        return self.backlash_mm

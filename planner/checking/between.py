@@ -15,6 +15,7 @@ from planner.checking.links import Bars, Rooms
 from planner.trajectory import Trajectory
 
 POINTS_PER_STEP = 10
+_FEWEST_PER_STEP, _POINTS_PER_SECOND = 2, 1000
 _STEPS_AT_ONCE = 4096
 
 
@@ -38,11 +39,18 @@ def cubic_error(max_jerk: FloatArray, step_s: float) -> FloatArray:
     return error
 
 
-def positions_between(positions: FloatArray, interpolation: Interpolation) -> Iterator[FloatArray]:
-    """Blocks (n_points, n_joints) that together are all positions at POINTS_PER_STEP points a step:
-    point k belongs to sample k // POINTS_PER_STEP and the last is the last sample."""
+def points_per_step(rate_hz: float) -> int:
+    """As many as give a thousand points a second, at most POINTS_PER_STEP, and the middle of each step at least:
+    nothing happens in the steps of a high rate, and of a million samples every point counts."""
+    return int(np.clip(np.ceil(_POINTS_PER_SECOND / rate_hz), _FEWEST_PER_STEP, POINTS_PER_STEP))
+
+
+def positions_between(positions: FloatArray, interpolation: Interpolation, per_step: int = POINTS_PER_STEP
+                      ) -> Iterator[FloatArray]:
+    """Blocks (n_points, n_joints) that together are all positions at so many points a step: point k belongs to sample
+    k // per_step and the last is the last sample."""
     n = len(positions)
-    fraction = np.arange(POINTS_PER_STEP) / POINTS_PER_STEP
+    fraction = np.arange(per_step) / per_step
     degree = min(3, n - 1) if interpolation is Interpolation.CUBIC else min(1, n - 1)
     # Weights of the samples around for each place that a step can have among them.
     weights = np.stack([_lagrange(place + fraction, degree) for place in range(max(degree, 1))])
@@ -64,7 +72,7 @@ def _lagrange(at: FloatArray, degree: int) -> FloatArray:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Sweep:
-    """The arm at and between the samples under one interpolation, p points.
+    """The arm at and between the samples under one interpolation, p points, a number of them for each step.
 
     sample: (p,) the sample at or before the point. tip_mm: (p, 3). lowest_mm: (p,) lowest node of the
     links. tilt_rad: (p,) angle of the tool axis to straight down. down: (p,) the pen is on the paper, which
@@ -72,6 +80,7 @@ class Sweep:
     """
 
     interpolation: Interpolation
+    points_per_step: int
     sample: IntArray
     tip_mm: FloatArray
     lowest_mm: FloatArray
@@ -80,15 +89,16 @@ class Sweep:
     rooms: Rooms | None
 
 
-def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation) -> Sweep:
-    """The arm's poses at and between all samples."""
+def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation, per_step: int = POINTS_PER_STEP
+          ) -> Sweep:
+    """The arm's poses at and, with more than one point a step, between all samples."""
     positions = arm.from_file_units(trajectory.positions)
-    n_points = (trajectory.n_samples - 1) * POINTS_PER_STEP + 1
+    n_points = (trajectory.n_samples - 1) * per_step + 1
     tip, lowest, tilt = np.empty((n_points, 3)), np.empty(n_points), np.empty(n_points)
     bars = Bars(arm, chain_poses(arm, positions[:1]).rows)
     rooms: list[tuple[FloatArray, IntArray]] = []
     start = 0
-    for block in positions_between(positions, interpolation):
+    for block in positions_between(positions, interpolation, per_step):
         poses = chain_poses(arm, block)
         if bars.pair_names:
             rooms.append(bars.rooms(poses))
@@ -98,10 +108,10 @@ def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation) -> Swe
         tilt[part] = np.arctan2(np.hypot(poses.tool[0], poses.tool[1]), -poses.tool[2])
         start += len(block)
     point = np.arange(n_points)
-    sample, between = point // POINTS_PER_STEP, point % POINTS_PER_STEP > 0
+    sample, between = point // per_step, point % per_step > 0
     down = trajectory.pen[sample] & (~between | trajectory.pen[np.minimum(sample + 1, trajectory.n_samples - 1)])
     apart = None
     if rooms:
         room, pair = (np.concatenate(part) for part in zip(*rooms, strict=True))
         apart = Rooms(room, pair, bars.pair_names)
-    return Sweep(interpolation, sample, tip, lowest, tilt, down, apart)
+    return Sweep(interpolation, per_step, sample, tip, lowest, tilt, down, apart)

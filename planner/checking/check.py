@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from planner.arms.arm import Arm
-from planner.checking.between import Interpolation, sweep
+from planner.checking.between import Interpolation, points_per_step, sweep
 from planner.checking.coverage import drawing_findings
-from planner.checking.joints import couplings, position_limits, rate_limits, rest_at_the_ends
+from planner.checking.joints import columns, couplings, position_limits, rate_limits, rest_at_the_ends
+from planner.checking.mapping import map_findings, within_the_canvas
 from planner.checking.pen import (
     above_the_paper,
     lift_notes,
     links_apart,
     on_the_paper,
+    pen_as_the_tip,
     straight_up_and_down,
     stroke_order,
     upright,
 )
-from planner.checking.verdict import Finding, Verdict
+from planner.checking.verdict import Verdict
 from planner.drawing.drawing import Drawing
 from planner.trajectory import Trajectory
 
@@ -28,25 +30,27 @@ def check_trajectory(
     tolerance_mm: for the pen path against the drawing, the tip's height on the paper, depth below it, and
     sideways drift while it is lifted or lowered. Without a drawing, the pen path is not compared.
     """
-    if trajectory.columns != arm.column_names:
-        return Verdict((Finding(
-            "columns", False, remark=f"are {', '.join(trajectory.columns)}; "
-            f"arm {arm.name} has {', '.join(arm.column_names)}: nothing else can be checked"),))
-    sweeps = [sweep(trajectory, arm, interpolation) for interpolation in Interpolation]
+    fitting = columns(trajectory, arm)
+    if not fitting.passed:
+        return Verdict((fitting,))
+    per_step = points_per_step(trajectory.rate_hz)
+    sweeps = [sweep(trajectory, arm, interpolation, per_step) for interpolation in Interpolation]
     findings = [
-        Finding("columns", True, remark=f"are the joints of {arm.name}"),
+        fitting,
         *rest_at_the_ends(trajectory, arm),
         *position_limits(trajectory, arm),
         *rate_limits(trajectory, arm),
         *couplings(trajectory, arm),
         *stroke_order(trajectory),
         *on_the_paper(trajectory, sweeps, tolerance_mm),
+        *pen_as_the_tip(trajectory, arm, sweeps[0]),
         *upright(trajectory, arm, sweeps),
         *above_the_paper(trajectory, sweeps, tolerance_mm),
         *links_apart(trajectory, sweeps, tolerance_mm),
         *straight_up_and_down(trajectory, sweeps, arm.pen.clearance_mm, tolerance_mm),
         *lift_notes(trajectory, arm, sweeps[0], tolerance_mm),
     ]
-    if drawing is not None:
-        findings += drawing_findings(trajectory, drawing, sweeps, tolerance_mm)
+    findings += within_the_canvas(trajectory, sweeps[0], tolerance_mm)
+    findings += (map_findings(trajectory, None, tolerance_mm) if drawing is None else
+                 drawing_findings(trajectory, drawing, sweeps, tolerance_mm))
     return Verdict(tuple(findings))

@@ -6,13 +6,15 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from planner.arms.arm import Arm, PenHold
+from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arrays import BoolArray, FloatArray, IntArray
-from planner.checking.between import POINTS_PER_STEP, Sweep
+from planner.checking.between import Sweep
 from planner.checking.verdict import Finding, Place
+from planner.counted import counted
 from planner.trajectory import Trajectory
 
 TILT_TOLERANCE_DEG = 0.1
+PLANNED_TO_MM = 1e-6
 
 
 def stroke_order(trajectory: Trajectory) -> list[Finding]:
@@ -24,7 +26,7 @@ def stroke_order(trajectory: Trajectory) -> list[Finding]:
     changes = 1 + np.flatnonzero((np.diff(stroke) != 0) & (stroke[1:] >= 0) & (stroke[:-1] >= 0))
     begins = np.union1d(begins, changes)
     wrong = np.flatnonzero(stroke[begins] != np.arange(len(begins)))
-    remark = f"{len(begins)} stroke{'' if len(begins) == 1 else 's'}, each once and in order"
+    remark = f"{counted(len(begins), 'stroke')}, each once and in order"
     place = None
     if len(wrong):
         place = place_of(trajectory, int(begins[wrong[0]]))
@@ -45,6 +47,56 @@ def on_the_paper(trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_mm: 
     """Height of the tip while the pen is down, either way."""
     return _worst(trajectory, sweeps, "tip on the paper while the pen is down", tolerance_mm, "mm",
                   lambda sweep: (np.abs(sweep.tip_mm[:, 2]), sweep.down))
+
+
+def pen_as_the_tip(trajectory: Trajectory, arm: Arm, sweep: Sweep) -> list[Finding]:
+    """Where the pen flag changes, the tip leaves the paper or comes to it, in this very step.
+
+    Told by which way the tip goes. In a step that the flag changes in, it rises from the paper, more than it moves
+    along it; in the next step within the stroke, it does not. A tip that rests with the pen up has not begun to rise.
+    """
+    tip = sweep.tip_mm[::sweep.points_per_step]
+    noise_mm = _tip_noise_mm(trajectory, arm)
+    worst = (0.0, -1, "")
+    for step in (1, -1):
+        edge = np.flatnonzero(trajectory.pen[1:-1] & ~trajectory.pen[1 + step:trajectory.n_samples - 1 + step]) + 1
+        up, inner = edge + step, edge - step
+        rise, along = tip[up, 2] - tip[edge, 2], np.linalg.norm(tip[up, :2] - tip[edge, :2], axis=1)
+        stays: BoolArray = (along > np.maximum(rise, noise_mm)) | (rise < -noise_mm) | _rests(trajectory, arm, edge, up)
+        lift = np.abs(tip[edge, 2] - tip[inner, 2])
+        slide = np.linalg.norm(tip[edge, :2] - tip[inner, :2], axis=1)
+        leaves: BoolArray = trajectory.pen[inner] & (lift > np.maximum(slide, noise_mm))
+        for wrong, samples, figure, remark in (
+            (stays, up, np.maximum(along, np.abs(rise)), "the pen is up, and the tip still on the paper"),
+            (leaves, edge, lift, "the pen is down, and the tip off the paper")):
+            figure = np.where(wrong, np.maximum(figure, noise_mm), 0.0)
+            if len(figure) and figure.max() > worst[0]:
+                worst = float(figure.max()), int(samples[np.argmax(figure)]), remark
+    figure_mm, sample, remark = worst
+    if sample < 0:
+        return [Finding("pen as the tip", True, remark="each stroke begins and ends with the tip on the paper")]
+    return [Finding("pen as the tip", False, figure_mm, unit="mm", remark=f"in this step: {remark}",
+                    place=place_of(trajectory, sample, sample * sweep.points_per_step, sweep))]
+
+
+def _tip_noise_mm(trajectory: Trajectory, arm: Arm) -> float:
+    """How much of a step of the tip may be none: positions are rounded, and planned to a tenth of a micrometre."""
+    reach_mm = sum(abs(one.a_mm) + abs(one.d_mm) + (max(abs(one.minimum), abs(one.maximum))
+                                                    if one.kind is JointKind.PRISMATIC else 0.0) for one in arm.joints)
+    rounding = arm.from_file_units(trajectory.rounding.max(axis=0, keepdims=True))[0]
+    moves = [amount * (1.0 if one.kind is JointKind.PRISMATIC else reach_mm)
+             for one, amount in zip(arm.joints, rounding.tolist(), strict=True)]
+    return PLANNED_TO_MM + float(2 * sum(moves))
+
+
+def _rests(trajectory: Trajectory, arm: Arm, one: IntArray, other: IntArray) -> BoolArray:
+    """Whether no joint moves from one sample to the other. Never, where the file's decimals would not show a motion
+    that begins with a tenth of the jerk that the joints may have."""
+    moved = np.abs(trajectory.positions[one] - trajectory.positions[other])
+    rounding = trajectory.rounding[one] + trajectory.rounding[other]
+    begun = arm.to_file_units(arm.max_jerk) / trajectory.rate_hz**3 / 60
+    rests: BoolArray = np.all((moved <= rounding) & (rounding < begun), axis=1)
+    return rests
 
 
 def above_the_paper(trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_mm: float) -> list[Finding]:
@@ -85,7 +137,7 @@ def straight_up_and_down(
         following = np.searchsorted(down, sweep.sample, side="right")
         distance = np.full(len(sweep.sample), np.inf)
         for neighbour, exists in ((following - 1, following > 0), (following, following < len(down))):
-            contact = down[np.clip(neighbour, 0, len(down) - 1)] * POINTS_PER_STEP
+            contact = down[np.clip(neighbour, 0, len(down) - 1)] * sweep.points_per_step
             gap = np.linalg.norm(sweep.tip_mm[:, :2] - sweep.tip_mm[contact, :2], axis=1)
             distance = np.where(exists, np.minimum(distance, gap), distance)
         return distance, low
@@ -111,11 +163,12 @@ def lift_notes(trajectory: Trajectory, arm: Arm, sweep: Sweep, tolerance_mm: flo
     down = np.flatnonzero(trajectory.pen)
     leaves = down[:-1][np.diff(down) > 1]
     returns = down[1:][np.diff(down) > 1]
+    per_step, enough_mm = sweep.points_per_step, arm.pen.clearance_mm - tolerance_mm
     low = [sample for sample, back in zip(leaves.tolist(), returns.tolist(), strict=True)
-           if height[sample * POINTS_PER_STEP:back * POINTS_PER_STEP].max() < arm.pen.clearance_mm - tolerance_mm]
+           if height[sample * per_step:back * per_step].max() < enough_mm]
     if low:
         notes.append(Finding("travels below clearance", True, float(len(low)), is_note=True,
-                             remark=f"of {len(leaves)} lifts", place=place_of(trajectory, low[0])))
+                             remark=f"of {counted(len(leaves), 'lift')}", place=place_of(trajectory, low[0])))
     return notes
 
 
@@ -124,7 +177,7 @@ def place_of(trajectory: Trajectory, sample: int, point: int | None = None, swee
     time_s = sample / trajectory.rate_hz
     tip_mm = None
     if sweep is not None and point is not None:
-        time_s = point / POINTS_PER_STEP / trajectory.rate_hz
+        time_s = point / sweep.points_per_step / trajectory.rate_hz
         tip_mm = tuple(sweep.tip_mm[point].tolist())
     stroke = int(trajectory.stroke[sample])
     return Place(time_s, sample, trajectory.line(sample), stroke=stroke if stroke >= 0 else None, tip_mm=tip_mm)
@@ -144,6 +197,6 @@ def _worst(trajectory: Trajectory, sweeps: Sequence[Sweep], check: str, limit: f
         return []
     worst, point, sweep = max(found, key=lambda entry: entry[0])
     sample = int(sweep.sample[point])
-    between = point % POINTS_PER_STEP > 0
+    between = point % sweep.points_per_step > 0
     return [Finding(check, worst <= limit, worst, limit, unit, place_of(trajectory, sample, point, sweep),
                     f"between samples, {sweep.interpolation.value} joints" if between else "")]

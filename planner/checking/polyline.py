@@ -11,6 +11,7 @@ from planner.arrays import BoolArray, FloatArray, IntArray
 
 NEAR_MM = 1.0
 _FEW = 25
+_NEAREST = 4
 _POINTS_AT_ONCE = 100_000
 
 
@@ -36,8 +37,8 @@ class DenseLines:
     def distance_mm(self, points_mm: FloatArray) -> FloatArray:
         """(k,) distance of points (k, 2) to the lines; needs at least one point to measure to.
 
-        Taken to the two pieces beside the nearest point. Another piece can be nearer by s^2 / 8 d at most,
-        s being the spacing of the points and d the distance, so figures err on the large side only. Beyond
+        Taken to the pieces beside the nearest points: of one alone, where a line ends on its beginning or runs beside
+        itself, another piece may be nearer by much of the spacing. Figures err on the large side only. Beyond
         NEAR_MM the nearest point is sought among few, and the figure can be too large by half their distance.
         """
         tree = cKDTree(self.points_mm)
@@ -47,17 +48,23 @@ class DenseLines:
         distance = np.empty(len(points_mm))
         for start in range(0, len(points_mm), _POINTS_AT_ONCE):
             block = points_mm[start:start + _POINTS_AT_ONCE]
-            gap, found = tree.query(block, distance_upper_bound=NEAR_MM)
-            nearest: IntArray = np.array(found, dtype=np.int64)
-            far = np.isinf(gap)  # a search for neighbours that are far away is slow in a large tree
-            nearest[far] = few[coarse.query(block[far])[1]]
-            before = np.maximum(nearest - 1, 0)
-            before = np.where(self.joined[before], before, nearest)
-            after = np.where(self.joined[nearest], nearest + 1, nearest)
-            distance[start:start + _POINTS_AT_ONCE] = np.minimum(
-                _to_segments(block, self.points_mm[before], self.points_mm[nearest]),
-                _to_segments(block, self.points_mm[nearest], self.points_mm[after]))
+            near = tree.query(block, k=_NEAREST, distance_upper_bound=NEAR_MM)
+            gap, found = np.array(near[0]), np.array(near[1], dtype=np.int64)
+            far = np.isinf(gap[:, 0])  # a search for neighbours that are far away is slow in a large tree
+            found[far, 0] = few[coarse.query(block[far])[1]]
+            found = np.where(np.isinf(gap) | far[:, None], found[:, :1], found)
+            distance[start:start + _POINTS_AT_ONCE] = np.min(
+                [self._beside(block, nearest) for nearest in found.T], axis=0)
         return distance
+
+    def _beside(self, points_mm: FloatArray, nearest: IntArray) -> FloatArray:
+        """(k,) distance of points (k, 2) to the pieces on both sides of the points of these indices (k,)."""
+        before = np.maximum(nearest - 1, 0)
+        before = np.where(self.joined[before], before, nearest)
+        after = np.where(self.joined[nearest], nearest + 1, nearest)
+        beside: FloatArray = np.minimum(_to_segments(points_mm, self.points_mm[before], self.points_mm[nearest]),
+                                        _to_segments(points_mm, self.points_mm[nearest], self.points_mm[after]))
+        return beside
 
 
 def dense_lines(points_mm: FloatArray, joined: BoolArray, spacing_mm: float) -> DenseLines:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from planner.counted import counted
+
 
 @dataclass(frozen=True, slots=True)
 class Place:
@@ -54,16 +56,22 @@ class Finding:
     remark: str = ""
     is_note: bool = False
 
-    def __str__(self) -> str:
-        mark = "note " if self.is_note else "ok   " if self.passed else "FAULT"
+    @property
+    def words(self) -> str:
+        """The law, of which joint, and the figures: everything but whether it passed and where."""
         joint = "" if self.place is None or self.place.joint is None else f" of {self.place.joint}"
-        parts = []
+        figures = ""
         if self.worst is not None:
             worst = round(self.worst, 9) + 0.0  # no "-0"
-            parts.append(f"{worst:.5g}" + ("" if self.limit is None else f" of {self.limit:.5g}"))
-        parts += [self.unit, self.remark, "" if self.place is None else f"({self.place})"]
-        told = " ".join(filter(None, parts))
-        return f"{mark} {self.check}{joint}" + (f": {told}" if told else "")
+            figures = f"{worst:.5g}" + ("" if self.limit is None else f" of {self.limit:.5g}")
+        told = " ".join(filter(None, (figures, self.unit, self.remark)))
+        return f"{self.check}{joint}" + (f": {told}" if told else "")
+
+    def __str__(self) -> str:
+        mark = "note " if self.is_note else "ok   " if self.passed else "FAULT"
+        place = "" if self.place is None or not str(self.place) else f" ({self.place})"
+        colon = ":" if place and ":" not in self.words else ""
+        return f"{mark} {self.words}{colon}{place}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,8 +90,7 @@ class Verdict:
 
     def text(self) -> str:
         """One line a finding and one for the sum, without a line end at the end."""
-        count = len(self.faults)
-        total = "passed" if self.passed else f"FAILED: {count} fault{'' if count == 1 else 's'}"
+        total = "passed" if self.passed else f"FAILED: {counted(len(self.faults), 'fault')}"
         return "\n".join([*map(str, self.findings), total])
 
     def as_dict(self) -> dict[str, Any]:

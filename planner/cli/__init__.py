@@ -18,6 +18,7 @@ EXIT_INTERRUPTED = 130
 EXIT_NO_MEMORY = 2
 EXIT_DEFECT = 70
 """A fault of the program itself: EX_SOFTWARE, away from the codes that say something about the input."""
+_QUIET = "--quiet"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -36,8 +37,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print_note("interrupted")
         return EXIT_INTERRUPTED
-    except MemoryError:
-        print_note("error: not enough memory for this; try a smaller drawing, a lower --rate or a larger --tolerance")
+    except MemoryError as error:
+        asked = f" ({error})" if str(error) else ""
+        print_note(f"error: this machine has not enough memory for it{asked}; a lower --rate, a larger --tolerance and"
+                   " fewer --workers take less")
         return EXIT_NO_MEMORY
     except Exception as error:
         if os.environ.get(TRACEBACK_VARIABLE):
@@ -48,8 +51,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _command(arguments: list[str]) -> int:
-    """A first argument that names a command is that command; anything else is planned."""
-    name, rest = (arguments[0], arguments[1:]) if arguments else ("", [])
+    """A first argument, but for `--quiet`, that names a command is that command; anything else is planned."""
+    quiet = arguments[:1] == [_QUIET]
+    name, *rest = [*arguments[1:], _QUIET] if quiet and len(arguments) > 1 else arguments or [""]
     match name:
         case "batch":
             from planner.cli.batch import batch

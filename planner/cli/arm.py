@@ -10,6 +10,7 @@ from planner.cli.joints import all_joints
 from planner.cli.parser import Parser
 from planner.cli.quantities import angle_deg
 from planner.cli.terminal import print_lines
+from planner.counted import counted
 from planner.errors import PlanError, UsageError
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def arm(arguments: list[str]) -> int:
             if given:
                 raise UsageError(f"{option} describes one arm: name it (see plan arm)")
         known = [load_arm(name) for name in known_arms()]
-        print_lines(_columns([(one.name, f"{one.n_joints} joints", one.source) for one in known]))
+        print_lines(_columns([(one.name, counted(one.n_joints, "joint"), one.source) for one in known]))
         return 0
     described = load_arm(options.arm)
     if options.at is not None:

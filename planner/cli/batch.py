@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from planner.cli.files import output_file
 from planner.cli.interrupts import interrupts_remembered
 from planner.cli.parser import Parser
 from planner.cli.plan import add_plan_options, settings_of
 from planner.cli.terminal import print_lines, print_note, print_warnings, progress
+from planner.counted import counted
 
 if TYPE_CHECKING:
     from planner.batch import Outcome
@@ -74,14 +76,14 @@ def _table(outcomes: Sequence[Outcome]) -> list[str]:
             lines.append(f"{name:<{width}}  {summary.n_strokes:>7}  {summary.drawn_mm / 1000:>7.2f}"
                          f"  {summary.duration_s:>7.1f}  {outcome.job.target}")
     planned = sum(outcome.summary is not None for outcome in outcomes)
-    return [*lines, f"{planned} of {len(outcomes)} drawings planned"]
+    return [*lines, f"{planned} of {counted(len(outcomes), 'drawing')} planned"]
 
 
 def _parser() -> Parser:
     parser = Parser("plan batch", _DESCRIPTION, _EPILOG)
     parser.usage = "plan batch FOLDER [-o OUTFOLDER] [options of plan]"
-    parser.add_argument("folder", type=Path, metavar="FOLDER")
-    parser.add_argument("-o", "--output", type=Path, metavar="OUTFOLDER",
+    parser.add_argument("folder", type=output_file, metavar="FOLDER")
+    parser.add_argument("-o", "--output", type=output_file, metavar="OUTFOLDER",
                         help="where the trajectories go, made if missing (default: beside the drawings)")
     add_plan_options(parser)
     return parser

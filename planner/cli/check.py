@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import IO, cast
 
+from planner.cli.files import input_file, output_file
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import MIN_TOLERANCE_MM, length_mm
-from planner.cli.terminal import print_lines
+from planner.cli.terminal import print_summary
 from planner.settings import PlanSettings
 
 _DESCRIPTION = """\
@@ -30,13 +30,15 @@ EXIT_FAULT = 1
 def check(arguments: list[str]) -> int:
     """Judge one trajectory. Errors: PlannerError."""
     parser = Parser("plan check", _DESCRIPTION, _EPILOG)
-    parser.add_argument("trajectory", type=Path, metavar="traj.csv")
-    parser.add_argument("--drawing", type=Path, metavar="DRAWING.svg", help="compare what is drawn with this")
+    parser.add_argument("trajectory", type=input_file, metavar="traj.csv", help="- for standard input")
+    parser.add_argument("--drawing", type=input_file, metavar="DRAWING.svg", help="compare what is drawn with this")
     parser.add_argument("--arm", metavar="NAME|FILE", help="judge it for this arm (default: the one in the trajectory)")
     parser.add_argument("--tolerance", type=length_mm(minimum_mm=MIN_TOLERANCE_MM), metavar="LENGTH",
                         default=PlanSettings().tolerance_mm,
                         help="how far the pen may be off the drawing (default: %(default)g mm)")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the verdict there as well")
+    parser.add_argument("--json", type=output_file, metavar="FILE",
+                        help="write the verdict there as well; - for standard output")
+    parser.add_argument("--quiet", action="store_true", help="print the faults alone, and nothing where there is none")
     options = parser.parse_args(arguments)
     sources = [options.trajectory] + ([options.drawing] if options.drawing else [])
     if options.json:
@@ -54,5 +56,5 @@ def check(arguments: list[str]) -> int:
     if options.json:
         with written_aside(options.json) as file:
             cast("IO[str]", file).write(json.dumps(verdict.as_dict(), indent=2) + "\n")
-    print_lines([verdict.text()])
+    print_summary(map(str, verdict.faults) if options.quiet else [verdict.text()], *filter(None, [options.json]))
     return 0 if verdict.passed else EXIT_FAULT

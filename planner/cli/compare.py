@@ -9,14 +9,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, cast
 
+from planner.cli.files import input_file, output_file
 from planner.cli.interrupts import interrupts_remembered
 from planner.cli.joints import all_joints
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.plan import add_arm_and_placement_options, settings_of
 from planner.cli.quantities import angle_deg, coordinate_mm
-from planner.cli.terminal import print_lines, print_warnings, progress
+from planner.cli.terminal import print_summary, print_warnings, progress
 from planner.errors import UsageError
+from planner.files import is_standard_output
 from planner.settings import PlanSettings
 
 if TYPE_CHECKING:
@@ -44,7 +46,6 @@ neighbours.
 
 exit codes: 0 compared, whatever methods failed; 2 unusable input or usage; 3 out of reach"""
 
-_STANDARD_OUTPUT = "-"
 _MOST_TARGETS = 1_000_000
 _COUPLED = 1e-4
 """Degrees by which a posture may miss its coupling."""
@@ -70,7 +71,7 @@ def compare(arguments: list[str]) -> int:
 
         comparison = compare_methods(arm, targets, start, settings, report)
     print_warnings(warnings)
-    _print(comparison, options.json)
+    _print(comparison, options.json, options.plot)
     if options.plot is not None:
         from planner.plots.comparison import plot_comparison
         from planner.plots.figure_file import save_figure
@@ -104,22 +105,21 @@ def _start(arm: Arm, positions: Sequence[float]) -> FloatArray:
     return start
 
 
-def _print(comparison: Comparison, target: str | None) -> None:
+def _print(comparison: Comparison, target: Path | None, picture: Path | None) -> None:
     from planner.comparison.description import comparison_description
     from planner.comparison.table import convergence_lines, table_lines
     from planner.trajectory import written_aside
 
-    text = json.dumps(comparison_description(comparison), indent=2, allow_nan=False) if target is not None else ""
-    if target == _STANDARD_OUTPUT:
-        print_lines([text])
-        return
     if target is not None:
-        with written_aside(Path(target)) as file:
+        text = json.dumps(comparison_description(comparison), indent=2, allow_nan=False)
+        with written_aside(target) as file:
             cast("IO[str]", file).write(text + "\n")
+        if is_standard_output(target):
+            return
     lines = table_lines(comparison)
     for found in comparison.convergences:
         lines += ["", *convergence_lines(comparison.arm, found)]
-    print_lines(lines)
+    print_summary(lines, *filter(None, [picture]))
 
 
 def _check(options: argparse.Namespace, settings: PlanSettings) -> None:
@@ -137,8 +137,8 @@ def _check(options: argparse.Namespace, settings: PlanSettings) -> None:
         if len(place) not in (2, 3):
             raise UsageError(f"--target takes X Y or X Y Z, not {len(place)} numbers")
     sources = [options.drawing] if options.drawing else []
-    if options.json not in (None, _STANDARD_OUTPUT):
-        check_target(Path(options.json), *sources)
+    if options.json is not None:
+        check_target(options.json, *sources)
     if options.plot is not None:
         check_target(options.plot, *sources)
 
@@ -150,7 +150,7 @@ def _check(options: argparse.Namespace, settings: PlanSettings) -> None:
 def _parser() -> Parser:
     parser = Parser("plan compare", _DESCRIPTION, _EPILOG)
     parser.usage = "plan compare DRAWING.svg | --target X Y [Z] ... | --random N [--seed S]  [options]"
-    parser.add_argument("drawing", nargs="?", type=Path, metavar="DRAWING.svg")
+    parser.add_argument("drawing", nargs="?", type=input_file, metavar="DRAWING.svg")
     parser.add_argument("--target", nargs="+", action="append", type=coordinate_mm,
                         metavar=("X", "Y [Z]"), help="a place for the pen, mm from the base (Z: default 0, the paper);"
                         " negative numbers carry no suffix; may be given again")
@@ -162,9 +162,9 @@ def _parser() -> Parser:
                              "mm where it slides), or for each that no coupling drives; with a drawing, at each "
                              "stroke (default: the documents' start for their arm; with a drawing, and for other "
                              "arms, the arm's home)")
-    parser.add_argument("--json", metavar="FILE",
+    parser.add_argument("--json", type=output_file, metavar="FILE",
                         help="all figures as JSON; - for standard output, in place of the table")
-    parser.add_argument("--plot", type=Path, metavar="FILE",
+    parser.add_argument("--plot", type=output_file, metavar="FILE",
                         help="a picture (.png, .svg or .pdf): the convergence and the postures, the way along the "
                              "drawing, or the distributions")
     parser.add_argument("--quiet", action="store_true", help="no progress")

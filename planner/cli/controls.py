@@ -1,4 +1,4 @@
-"""What people at the arm want of it: keys of the terminal, Ctrl-C, and a request to terminate."""
+"""What people at the arm want of it: keys of the terminal, Ctrl-C, a request to terminate, a terminal that closes."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import re
 import select
 import signal
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from types import FrameType
 
 from hardware.playing import Request
@@ -35,7 +35,10 @@ class Controls:
     def request(self) -> Request:
         """Looks whether a key has been pressed, and never waits."""
         if self._keyboard is not None and select.select([self._keyboard], [], [], 0)[0]:
-            keys = os.read(self._keyboard, 1024)
+            try:
+                keys = os.read(self._keyboard, 1024)
+            except OSError:  # EIO: its other side is closed
+                keys = b""
             if not keys:  # the terminal is gone: nobody is left to press a key
                 self._keyboard = None
             self._press(keys)
@@ -61,6 +64,11 @@ class Controls:
             raise KeyboardInterrupt
         self._demand(Request.EMERGENCY_STOP if self._request is Request.STOP else Request.STOP)
 
+    def hang_up(self, number: int, frame: FrameType | None) -> None:
+        """The terminal has been closed, of which the system and the shell may both tell: nobody asks for more than a
+        stop."""
+        self._demand(Request.STOP)
+
     @contextmanager
     def keyboard(self) -> Iterator[None]:
         """Keys are read one by one and not shown, if standard input is a terminal and this program has it in front.
@@ -85,17 +93,42 @@ class Controls:
             yield
         finally:
             self._keyboard = None
-            termios.tcsetattr(terminal, termios.TCSADRAIN, before)
+            with suppress(termios.error):  # the terminal may be gone
+                termios.tcsetattr(terminal, termios.TCSADRAIN, before)
 
 
 @contextmanager
 def controls() -> Iterator[Controls]:
     """Keys and signals become requests until this ends."""
     wishes = Controls()
-    before = {number: signal.signal(number, wishes.interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    with (_handling({"SIGINT": wishes.interrupt, "SIGTERM": wishes.interrupt, "SIGHUP": wishes.hang_up}),
+          wishes.keyboard()):
+        yield wishes
+
+
+@contextmanager
+def breaking_off() -> Iterator[None]:
+    """A request to terminate and a terminal that closes end the program as Ctrl-C does, until this ends: while nothing
+    moves, what is open only has to be closed."""
+    with _handling({"SIGTERM": _break_off, "SIGHUP": _break_off}):
+        yield
+
+
+def _break_off(number: int, frame: FrameType | None) -> None:
+    raise KeyboardInterrupt
+
+
+@contextmanager
+def _handling(handlers: Mapping[str, Callable[[int, FrameType | None], None]]) -> Iterator[None]:
+    """Signals by name, those that this system has, go to their handlers until this ends."""
+    before = {}
     try:
-        with wishes.keyboard():
-            yield wishes
+        for name, handler in handlers.items():
+            number = getattr(signal, name, None)
+            if number is None or (name == "SIGHUP" and signal.getsignal(number) is signal.SIG_IGN):  # nohup asks for it
+                continue
+            before[number] = signal.signal(number, handler)
+        yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        for number, earlier in before.items():
+            signal.signal(number, earlier)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from planner.cli.files import STANDARD_INPUT, input_file, output_file
 from planner.cli.interrupts import interrupts_remembered
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
@@ -19,8 +20,9 @@ from planner.cli.quantities import (
     speed_mm_s,
 )
 from planner.cli.report import check_report, write_report_of
-from planner.cli.terminal import print_lines, print_warnings, progress
+from planner.cli.terminal import print_summary, print_warnings, progress
 from planner.cli.workers import add_workers_option
+from planner.files import STANDARD
 from planner.settings import CanvasKind, Method, PlanSettings
 
 _DESCRIPTION = """\
@@ -41,6 +43,7 @@ examples:
   plan flower.svg -o traj.csv --arm my_arm.toml    for an arm of your own
   plan flower.svg --speed 4cm/s --margin 0.5in --rotate 90
   plan flower.svg -o traj.csv --report flower      and a page about it, flower/index.html
+  draw | plan - > traj.csv                         from a program that writes an SVG, as part of a pipe
   plan city.svg --workers 4                        with four processes; the result does not depend on them
   plan flower.svg --weights time=3,reversals=0     postures for speed rather than for servos with backlash
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
@@ -51,11 +54,18 @@ exit codes: 0 done; 1 a check found fault; 2 unusable input or usage; 3 cannot b
 4 hardware fault; 70 a defect of the planner; 130 interrupted"""
 
 
+_WORK = {"reading": 5, "placing": 3, "joining": 2, "ordering strokes": 10, "drawing motions": 50, "travels": 25,
+         "report": 5}
+"""The stages of a plan in their order, and roughly what share of the time each takes."""
+_FINE = 100
+
+
 def plan(arguments: list[str]) -> int:
     """Plan one drawing. Errors: PlannerError."""
     options = _parser().parse_args(arguments)
     drawing: Path = options.drawing
-    target: Path = options.output or Path(drawing.with_suffix(".csv").name)
+    target: Path = options.output or (
+        Path(STANDARD) if drawing == STANDARD_INPUT else Path(f"{drawing.stem}.csv"))
     check_target(target, drawing)
     if options.report:
         check_report(options.report, drawing, target)
@@ -64,10 +74,10 @@ def plan(arguments: list[str]) -> int:
     from planner.pipeline import plan as plan_drawing
     from planner.trajectory import write_trajectory
 
-    with progress(quiet=options.quiet) as show, interrupts_remembered() as raise_if_interrupted:
+    with progress(quiet=options.quiet, single=True) as show, interrupts_remembered() as raise_if_interrupted:
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
-            show(stage, done, total)
+            show(stage, *_of_all(stage, done, total))
 
         planned = plan_drawing(drawing, settings, report, options.workers)
         raise_if_interrupted()
@@ -75,11 +85,19 @@ def plan(arguments: list[str]) -> int:
         written = [target]
         if options.report:
             report("report", 0, 1)
-            written.append(write_report_of(planned, drawing, settings, arguments, options.report))
+            written.append(write_report_of(planned, settings, arguments, options.report))
     print_warnings(planned.summary.warnings)
     if not options.quiet:
-        print_lines([*planned.summary.lines(), *(f"wrote {file}" for file in written)])
+        wrote = [f"wrote {file}" for file in written if str(file) != STANDARD]
+        print_summary([*planned.summary.lines(), *wrote], target)
     return 0
+
+
+def _of_all(stage: str, done: int, total: int) -> tuple[int, int]:
+    """How much of all stages is done, and how much there is: one bar, and one clock for the time left."""
+    names = list(_WORK)
+    before = sum(_WORK[name] for name in names[:names.index(stage)])
+    return round(_FINE * (before + _WORK[stage] * done / max(total, 1))), _FINE * sum(_WORK.values())
 
 
 def settings_of(options: argparse.Namespace) -> PlanSettings:
@@ -94,10 +112,12 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
 def _parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
     parser.usage = "plan DRAWING.svg [-o traj.csv] [options]\n       plan batch|run|ports|check|plot|compare|arm ..."
-    parser.add_argument("drawing", type=Path, metavar="DRAWING.svg")
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE",
-                        help="the trajectory (default: the drawing's name with .csv, in the current folder)")
-    parser.add_argument("--report", type=Path, metavar="DIR",
+    parser.add_argument("drawing", type=input_file, metavar="DRAWING.svg",
+                        help="the drawing, gzipped or not; - for standard input")
+    parser.add_argument("-o", "--output", type=output_file, metavar="FILE",
+                        help="the trajectory, - for standard output (default: the drawing's name with .csv, in the"
+                             " current folder; of a drawing from standard input, standard output)")
+    parser.add_argument("--report", type=output_file, metavar="DIR",
                         help="write DIR/index.html too: a page with summary, pictures, tables and the check's verdict")
     add_plan_options(parser)
     return parser

@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from planner.cli.files import input_file, output_file
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import MIN_TOLERANCE_MM, length_mm, number
@@ -31,7 +32,7 @@ kinds:
   speed      the pen's path with its speed as colour
   error      how far the pen is off the drawing, on the paper and along the way
   phase      the pen's speed along one stroke, under what the joints allow on that path
-  timeline   when the arm lowers, draws, lifts, travels and dwells, with totals
+  timeline   when the arm lowers, rests, draws, lifts and travels, with totals
   film       the arm as it draws, from above and from the side
   workspace  the reach of an arm, its canvases, and how freely and how surely the pen moves"""
 
@@ -49,6 +50,7 @@ examples:
   plan plot -o scara.png --kind workspace --arm scara
 
 The suffix of FILE says the format: .png, .svg or .pdf; of a film .html (one file with a player in it), .gif or .mp4.
+- is standard output, to which a picture goes as .png and a film as .gif.
 A film's name is enough to ask for one."""
 
 _WITHOUT_TRAJECTORY = "workspace"
@@ -96,13 +98,14 @@ def plot(arguments: list[str]) -> int:
 
 def _parser() -> Parser:
     parser = Parser("plan plot", _DESCRIPTION, _EPILOG)
-    parser.add_argument("trajectory", nargs="?", type=Path, metavar="traj.csv")
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", required=True, help="the picture or film")
+    parser.add_argument("trajectory", nargs="?", type=input_file, metavar="traj.csv",
+                        help="- for standard input")
+    parser.add_argument("-o", "--output", type=output_file, metavar="FILE", required=True, help="the picture or film")
     parser.add_argument("--kind", choices=_KINDS, metavar="KIND",
                         help="what to draw, see above (default: profiles, or film where FILE is one)")
     parser.add_argument("--arm", metavar="NAME|FILE", help="draw it for this arm (default: the one in the trajectory; "
                         "with --kind workspace drawing_arm)")
-    parser.add_argument("--drawing", type=Path, metavar="DRAWING.svg",
+    parser.add_argument("--drawing", type=input_file, metavar="DRAWING.svg",
                         help="with --kind drawing or error: what was to be drawn")
     parser.add_argument("--tolerance", type=length_mm(minimum_mm=MIN_TOLERANCE_MM), metavar="LENGTH",
                         help="with --kind error: how far the pen may be off "

@@ -25,18 +25,16 @@ def check_report(folder: Path, drawing: Path, target: Path) -> None:
         raise OutputError(str(target), "the report goes there")
 
 
-def write_report_of(planned: Plan, drawing: Path, settings: PlanSettings, arguments: Sequence[str], folder: Path
-                    ) -> Path:
+def write_report_of(planned: Plan, settings: PlanSettings, arguments: Sequence[str], folder: Path) -> Path:
     """Judge the plan and write the page about it; the page. Errors: OutputError."""
     from planner.arms.arm_file import load_arm
     from planner.checking.check import check_trajectory
     from planner.cli.workspace import paper_in_reach
-    from planner.drawing.svg import read_drawing
     from planner.report.report import Planned, write_report
 
-    arm, outlines = load_arm(settings.arm), read_drawing(drawing)
-    verdict = check_trajectory(planned.trajectory, arm, outlines, settings.tolerance_mm)
+    arm = load_arm(settings.arm)
+    verdict = check_trajectory(planned.trajectory, arm, planned.drawing, settings.tolerance_mm)
     page = folder / _PAGE
-    write_report(Planned(shlex.join(("plan", *arguments)), settings, planned.summary, planned.trajectory, arm, outlines,
-                         verdict, paper_in_reach(arm).reach_mm), page)
+    write_report(Planned(shlex.join(("plan", *arguments)), settings, planned.summary, planned.trajectory, arm,
+                         planned.drawing, verdict, paper_in_reach(arm).reach_mm), page)
     return page

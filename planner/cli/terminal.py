@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
+import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from planner.errors import OutputError
+from planner.files import is_standard_output
 
 if TYPE_CHECKING:
     from rich.progress import TaskID
@@ -19,7 +23,10 @@ Show = Callable[[str, int, int], None]
 
 
 def print_lines(lines: Iterable[str]) -> None:
-    """Results. A reader that has gone away (`| head`) is no error; a full disk is. Errors: OutputError."""
+    """Results. A reader that has gone away (`| head`, a closed terminal) is no error; a full disk is.
+
+    Errors: OutputError.
+    """
     if sys.stdout is None:  # started with standard output closed
         return
     if isinstance(sys.stdout, io.TextIOWrapper):  # a file name may hold what the terminal's encoding does not
@@ -31,8 +38,20 @@ def print_lines(lines: Iterable[str]) -> None:
     except BrokenPipeError:
         _silence(sys.stdout)
     except OSError as error:
+        gone = _is_gone(sys.stdout, error)
         _silence(sys.stdout)
-        raise OutputError("to standard output", error.strerror or str(error)) from error
+        if not gone:
+            raise OutputError("to standard output", error.strerror or str(error)) from error
+
+
+def print_summary(lines: Iterable[str], *results: Path) -> None:
+    """What people read about results: on standard output, unless a result itself goes there, else on standard error.
+    Errors: OutputError."""
+    if not any(map(is_standard_output, results)):
+        print_lines(lines)
+        return
+    for line in lines:
+        _print_aside(line)
 
 
 def print_warnings(warnings: Iterable[str]) -> None:
@@ -42,38 +61,55 @@ def print_warnings(warnings: Iterable[str]) -> None:
 
 def print_note(message: str) -> None:
     """One line on standard error, in the program's name."""
+    _print_aside("plan: " + " ".join(message.splitlines()))
+
+
+def _print_aside(line: str) -> None:
     if sys.stderr is None:
         return
     try:
-        print("plan: " + " ".join(message.splitlines()), file=sys.stderr, flush=True)
+        print(line, file=sys.stderr, flush=True)
     except OSError:  # nobody is left to tell
         _silence(sys.stderr)
 
 
 @contextmanager
 def progress(*, quiet: bool, single: bool = False) -> Iterator[Show]:
-    """Bars with the time left while standard error is a terminal, else nothing.
+    """Bars while standard error is a terminal, else nothing.
 
-    A bar for each label, or with `single` one bar whose label changes.
+    A bar for each label, with the time that it may take by the pace so far; or with `single` one bar whose label
+    changes, and which leaves it to the label to tell of time.
     """
     if quiet or sys.stderr is None or not sys.stderr.isatty():
         yield lambda label, done, total: None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, ProgressColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TaskProgressColumn(),
-               TimeRemainingColumn(), TextColumn("left"))
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bars:
-        tasks: dict[str, TaskID] = {}
+    columns: list[ProgressColumn] = [TextColumn("{task.description}", markup=False), BarColumn(), TaskProgressColumn()]
+    if not single:
+        columns += [TimeRemainingColumn(), TextColumn("left")]
+    bars = Progress(*columns, console=Console(stderr=True), transient=True)
+    tasks: dict[str, TaskID] = {}
 
-        def show(label: str, done: int, total: int) -> None:
-            key = "" if single else label
-            if key not in tasks:
-                tasks[key] = bars.add_task(label, total=total)
-            bars.update(tasks[key], description=label, completed=done, total=total)
+    def show(label: str, done: int, total: int) -> None:
+        key = "" if single else label
+        if key not in tasks:
+            tasks[key] = bars.add_task(label, total=total)
+        bars.update(tasks[key], description=label, completed=done, total=total)
 
+    bars.start()
+    try:
         yield show
+    finally:
+        with suppress(OSError):  # the terminal may be gone
+            bars.stop()
+
+
+def _is_gone(stream: io.TextIOBase | object, error: OSError) -> bool:
+    """Whether it is a terminal that somebody has closed."""
+    return (error.errno == errno.EIO and isinstance(stream, io.TextIOWrapper)
+            and stat.S_ISCHR(os.fstat(stream.fileno()).st_mode))
 
 
 def _silence(stream: io.TextIOBase | object) -> None:

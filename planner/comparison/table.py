@@ -12,6 +12,7 @@ from planner.comparison.compare import Comparison, MethodResult
 from planner.comparison.convergence import Convergence
 from planner.comparison.targets import TargetKind
 from planner.comparison.worked_example import ERRATA
+from planner.counted import counted
 from planner.inverse_kinematics.dls import DOCUMENTED, FOR_DRAWING, DlsStep
 
 WIDTH = 100
@@ -128,9 +129,10 @@ def _misprints(arm: Arm, found: Convergence) -> Iterator[str]:
 def _heading(comparison: Comparison) -> str:
     targets = comparison.targets
     count = len(targets.tips_mm)
-    what = {TargetKind.SINGLE: f"{count} single target{'s' if count > 1 else ''}",
-            TargetKind.RANDOM: f"{count} random targets on the paper, each from the start",
-            TargetKind.DRAWING: f"{count} targets along {len(targets.firsts)} strokes"}[targets.kind]
+    what = {TargetKind.SINGLE: f"{counted(count, 'single target')}",
+            TargetKind.RANDOM: f"{counted(count, 'random target')} on the paper, each from the start",
+            TargetKind.DRAWING: f"{counted(count, 'target')} along {counted(len(targets.firsts), 'stroke')}",
+            }[targets.kind]
     return f"{comparison.arm.name}: {what}"
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from planner.arms.arm import Arm, PenHold
 from planner.arms.kinematics import kinematics_of
-from planner.arms.posture_samples import usable_postures
+from planner.arms.posture_tests import usable_postures
 from planner.arms.projection import project
 from planner.arrays import FloatArray, IntArray
 from planner.errors import PlanError

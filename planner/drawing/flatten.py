@@ -8,6 +8,9 @@ import numpy as np
 
 from planner.arrays import FloatArray
 from planner.drawing.drawing import Outline
+from planner.errors import PlanError
+
+POINT_LIMIT = 5_000_000
 
 
 def flatten(outline: Outline, user_to_arm: FloatArray, tolerance_mm: float) -> FloatArray:
@@ -22,7 +25,8 @@ def flatten_all(outlines: Sequence[Outline], user_to_arm: FloatArray, tolerance_
     """`flatten` for many outlines at once.
 
     A cubic with second differences D splits at equal parameters into sqrt(6 |D| / (8 tolerance)) chords, since its
-    second derivative is at most 6 |D| and a chord over dt misses it by at most dt^2 / 8 of that.
+    second derivative is at most 6 |D| and a chord over dt misses it by at most dt^2 / 8 of that. Errors: PlanError
+    where that comes to more points than the limit.
     """
     if not outlines:
         return []
@@ -30,7 +34,11 @@ def flatten_all(outlines: Sequence[Outline], user_to_arm: FloatArray, tolerance_
     bend = np.linalg.norm(np.diff(control, n=2, axis=1), axis=2).max(axis=1)
     # Rounding must not bend a straight line.
     bend[bend < 1e-12 * np.abs(control).max(axis=(1, 2))] = 0.0
-    n_chords = np.maximum(1, np.ceil(np.sqrt(0.75 * bend / tolerance_mm))).astype(np.int64)
+    n_chords = np.maximum(1.0, np.ceil(np.sqrt(0.75 * bend / tolerance_mm)))
+    if not n_chords.sum() <= POINT_LIMIT:
+        raise PlanError(f"at this size and tolerance the drawing comes to more than {POINT_LIMIT} points; make it"
+                        " smaller (--fit), or the --tolerance larger")
+    n_chords = n_chords.astype(np.int64)
     curve = np.repeat(np.arange(len(control)), n_chords)
     chord = np.arange(len(curve)) - np.repeat(np.cumsum(n_chords) - n_chords, n_chords) + 1
     ends = _at(control[curve], (chord / n_chords[curve])[:, np.newaxis])

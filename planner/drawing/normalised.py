@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 from array import array
 from collections import Counter
@@ -14,9 +15,15 @@ from planner.affine import compose
 from planner.arrays import BoolArray, FloatArray, frozen
 from planner.drawing.drawing import Outline
 from planner.drawing.rewrite import PLACEHOLDERS
+from planner.errors import DrawingError
 
 # Beyond this a coordinate is a mistake, and the normaliser clamps numbers at 2^31.
 LARGEST_COORDINATE = 1e9
+CURVE_LIMIT = 2_500_000
+SUBPATH_LIMIT = 250_000
+REPEAT_LIMIT = 10
+"""How often the same line is drawn over itself: a few times make it darker, more wear the paper through, and are a
+slip of the program that wrote the file."""
 _TOKEN = re.compile(r"\S+")
 _URL = re.compile(r"url\(#(.*)\)")
 _IDENTITY = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
@@ -35,10 +42,11 @@ class NormalisedSvg:
     skipped: Counter[str]
 
 
-def read_normalised(data: bytes) -> NormalisedSvg:
-    """Parse the result of the normaliser."""
-    reader = _Reader()
-    reader.parser.Parse(data, True)
+def read_normalised(data: bytes, source: str) -> NormalisedSvg:
+    """Parse the result of the normaliser. Errors: DrawingError where it has more curves or subpaths than the limits."""
+    reader = _Reader(source)
+    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is found where it would be drawn
+        reader.parser.Parse(data, True)
     return NormalisedSvg(tuple(reader.outlines), reader.root, reader.skipped)
 
 
@@ -58,7 +66,10 @@ class _Group:
 
 
 class _Reader:
-    def __init__(self) -> None:
+    def __init__(self, source: str) -> None:
+        self._source = source
+        self._n_curves = self._n_subpaths = 0
+        self._times_drawn: Counter[bytes] = Counter()
         self.outlines: list[Outline] = []
         self.root: dict[str, str] = {}
         self.skipped: Counter[str] = Counter()
@@ -129,11 +140,18 @@ class _Reader:
         is_stroked = stroke != "none" and float(attributes.get("stroke-opacity", 1.0)) > 0.0
         if not is_filled and not is_stroked:
             return
+        data = attributes.get("d", "")
+        self._count(data)
         found = []
-        for curves in _subpaths(attributes.get("d", "")):
+        for curves in _subpaths(data):
             beziers = frozen(curves @ group.to_user[:, :2].T + group.to_user[:, 2])
             if not np.all(np.abs(beziers) < LARGEST_COORDINATE):
                 self.skipped["path with unusable numbers"] += 1
+                continue
+            mark = hashlib.blake2b(beziers.data, digest_size=16).digest()
+            self._times_drawn[mark] += 1
+            if self._times_drawn[mark] > REPEAT_LIMIT:
+                self.skipped[f"repeats of a line that is there {REPEAT_LIMIT} times"] += 1
                 continue
             found.append(Outline(beziers))
             if group.user_to_clip is not None:
@@ -142,6 +160,15 @@ class _Reader:
         if found and is_stroked and "stroke-dasharray" in attributes:
             self.skipped["dash pattern"] += 1
         self.outlines.extend(found)
+
+    def _count(self, data: str) -> None:
+        """Count curves and subpaths before they take memory."""
+        self._n_subpaths += data.count("M")
+        self._n_curves += sum(map(data.count, "LCQZ"))
+        for count, limit, what in ((self._n_subpaths, SUBPATH_LIMIT, "subpaths"),
+                                   (self._n_curves, CURVE_LIMIT, "lines and curves")):
+            if count > limit:
+                raise DrawingError(self._source, f"more than {limit} {what} (split it into several drawings)")
 
     def _note_clip(self, name: str, attributes: dict[str, str]) -> None:
         """Remember the box of a clip path that is one plain rectangle, in the units of the clipped group."""
@@ -171,6 +198,8 @@ def _box(points: FloatArray) -> Box:
 
 def _inverse(affine: FloatArray) -> FloatArray:
     """The affine (2, 3) that undoes `affine`; something of the kind where it squeezes everything to a line."""
+    if not np.isfinite(affine).all():
+        return np.full((2, 3), np.nan)
     linear = np.linalg.pinv(affine[:, :2])
     return np.column_stack([linear, -linear @ affine[:, 2]])
 

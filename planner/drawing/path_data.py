@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from planner.drawing.arcs import arc_to_cubics
 
-_NUMBER = re.compile(r"[\s,]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)")
-_FLAG = re.compile(r"[\s,]*([01])")
+_NUMBER = r"[\s,]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
+_FLAG = r"[\s,]*([01])"
 _COMMAND = re.compile(r"[\s,]*([MmLlHhVvCcSsQqTtAaZz])")
 _FOREIGN = re.compile(r"[^MmLlHhVvCcSsQqTtAaZz0-9eE+\-.,\s]")
 # An integer part of ten digits or more, or a decimal exponent of nine or more.
 _HUGE = re.compile(r"(?<![\d.])0*[1-9]\d{9}|[eE]\+?0*(?:9|[1-9]\d)")
-_ARGUMENTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
+_ARGUMENTS = {letter: re.compile(arguments) for letter, arguments in {
+    "M": 2 * _NUMBER, "L": 2 * _NUMBER, "H": _NUMBER, "V": _NUMBER, "C": 6 * _NUMBER, "S": 4 * _NUMBER,
+    "Q": 4 * _NUMBER, "T": 2 * _NUMBER, "A": 3 * _NUMBER + 2 * _FLAG + 2 * _NUMBER, "Z": ""}.items()}
 
 
 def has_unusable_numbers(data: str) -> bool:
@@ -31,9 +33,14 @@ def without_arcs(data: str) -> str:
 
     After an error in the data, what stands before it is kept (SVG 1.1, section F.2).
     """
+    return "".join(commands(data))
+
+
+def commands(data: str) -> Iterator[str]:
+    """`without_arcs` bit by bit, as arcs may multiply what there is; data without arcs as it stands."""
     if "A" not in data and "a" not in data:
-        return data
-    return _Rewriter(data).rewritten()
+        return iter((data,))
+    return _Rewriter(data).commands()
 
 
 def command(letter: str, values: Iterable[float]) -> str:
@@ -45,14 +52,13 @@ class _Rewriter:
     def __init__(self, data: str) -> None:
         self._data = data
         self._at = 0
-        self._out: list[str] = []
         self._x = self._y = self._start_x = self._start_y = 0.0
         # The last control point, for S after C or S and for T after Q or T.
         self._cubic_handle: tuple[float, float] | None = None
         self._quadratic_handle: tuple[float, float] | None = None
 
-    def rewritten(self) -> str:
-        letter = ""
+    def commands(self) -> Iterator[str]:
+        letter, is_first = "", True
         while True:
             match = _COMMAND.match(self._data, self._at)
             if match:
@@ -63,26 +69,22 @@ class _Rewriter:
                 values = self._arguments(letter.upper())
             else:
                 break
-            if values is None or (not self._out and letter not in "Mm"):
+            if values is None or (is_first and letter not in "Mm"):
                 break
-            self._segment(letter.upper(), letter.islower(), values)
-        return "".join(self._out)
+            is_first = False
+            yield from self._segment(letter.upper(), letter.islower(), values)
 
     def _arguments(self, letter: str) -> list[float] | None:
         """The numbers of one segment; None where they end or are not numbers."""
-        values = []
-        for index in range(_ARGUMENTS[letter]):
-            pattern = _FLAG if letter == "A" and index in (3, 4) else _NUMBER
-            match = pattern.match(self._data, self._at)
-            if not match:
-                return None
-            values.append(float(match[1]))
-            self._at = match.end()
-        return values
+        match = _ARGUMENTS[letter].match(self._data, self._at)
+        if not match:
+            return None
+        self._at = match.end()
+        return [float(number) for number in match.groups()]
 
-    def _segment(self, letter: str, relative: bool, values: list[float]) -> None:
+    def _segment(self, letter: str, relative: bool, values: list[float]) -> Iterator[str]:
         if letter == "Z":
-            self._out.append("Z")
+            yield "Z"
             self._x, self._y = self._start_x, self._start_y
             self._cubic_handle = self._quadratic_handle = None
             return
@@ -100,9 +102,9 @@ class _Rewriter:
         if letter == "A":
             rx, ry, rotation, large, sweep, x, y = values
             for cubic in arc_to_cubics(self._x, self._y, rx, ry, rotation, large > 0.5, sweep > 0.5, x, y):
-                self._out.append(command("C", cubic))
+                yield command("C", cubic)
         else:
-            self._out.append(command(letter, values))
+            yield command(letter, values)
             if letter == "C":
                 cubic_handle = (values[2], values[3])
             elif letter == "Q":

@@ -11,11 +11,16 @@ import base64
 import math
 import re
 from collections import Counter
+from collections.abc import Iterable, Iterator
 from xml.parsers import expat
 
 from planner.drawing.arcs import ellipse_cubics
-from planner.drawing.path_data import command, has_foreign_characters, has_unusable_numbers, without_arcs
+from planner.drawing.path_data import command, commands, has_foreign_characters, has_unusable_numbers
 from planner.drawing.source import SVG_NAMESPACE, Survey, href_of, local_name, parse
+from planner.errors import DrawingError
+
+PATH_LIMIT_BYTES = 64 << 20
+"""Of path data with its arcs as cubics: an arc of twenty letters may take twelve times as many."""
 
 # A PNG of one pixel.
 _PIXEL = bytes.fromhex("89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000"
@@ -43,15 +48,18 @@ _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;",
 
 
 def rewrite(data: bytes, survey: Survey, source: str) -> tuple[bytes, Counter[str]]:
-    """The document for the normaliser, and how many paths had data that cannot be used."""
-    rewriter = _Rewriter(survey)
+    """The document for the normaliser, and how many paths had data that cannot be used. Errors: DrawingError where
+    arcs come to more than the limit."""
+    rewriter = _Rewriter(survey, source)
     parse(data, rewriter.parser, source)
     return "".join(rewriter.out).encode(), rewriter.skipped
 
 
 class _Rewriter:
-    def __init__(self, survey: Survey) -> None:
+    def __init__(self, survey: Survey, source: str) -> None:
         self.out: list[str] = []
+        self._source = source
+        self._path_bytes = 0
         self.skipped: Counter[str] = Counter()
         # Markers sit on paths and not on circles: with markers about, a circle must stay one.
         self._may_replace_shapes = not survey.has_markers and not _SHAPE_SELECTORS.search(survey.css)
@@ -147,7 +155,15 @@ class _Rewriter:
         if has_foreign_characters(data):
             self.skipped["path with unreadable data"] += 1
         if data:
-            attributes["d"] = without_arcs(data)
+            attributes["d"] = "".join(self._bounded(commands(data)))
+
+    def _bounded(self, parts: Iterable[str]) -> Iterator[str]:
+        for part in parts:
+            self._path_bytes += len(part)
+            if self._path_bytes > PATH_LIMIT_BYTES:
+                raise DrawingError(self._source, f"its paths, with arcs as curves, are larger than the limit of"
+                                                 f" {PATH_LIMIT_BYTES >> 20} MB (split it into several drawings)")
+            yield part
 
     def _rewrite_shape(self, name: str, tag: str, attributes: dict[str, str]) -> str:
         """Turn a round shape of known size into a path; the name of the element to write."""

@@ -17,6 +17,11 @@ from planner.errors import DrawingError
 SIZE_LIMIT_BYTES = 32 * 1024 * 1024
 DEPTH_LIMIT = 500
 ELEMENT_LIMIT = 250_000
+_OTHER_FORMATS = {
+    b"\x89PNG": "a picture (PNG)", b"\xff\xd8\xff": "a picture (JPEG)", b"GIF8": "a picture (GIF)",
+    b"RIFF": "a picture (WebP)", b"II*\0": "a picture (TIFF)", b"MM\0*": "a picture (TIFF)", b"BM": "a picture (BMP)",
+    b"%PDF": "a PDF", b"%!PS": "PostScript"}
+"""What files of other kinds begin with: none of this begins an XML document."""
 SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 SHAPES = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
 
@@ -39,7 +44,7 @@ class Survey:
 
 def read_source(path: Path) -> bytes:
     """The XML bytes of an .svg or gzipped .svgz file; DrawingError if there are none or too many."""
-    source = path.name
+    source = path.name or str(path)
     try:
         if path.is_dir():
             raise DrawingError(source, "is a folder, not an SVG file")
@@ -56,6 +61,9 @@ def read_source(path: Path) -> bytes:
         raise DrawingError(source, f"larger than the limit of {SIZE_LIMIT_BYTES} bytes ({SIZE_LIMIT_BYTES >> 20} MB)")
     if not data.strip():
         raise DrawingError(source, "the file is empty")
+    other = next((kind for start, kind in _OTHER_FORMATS.items() if data.startswith(start)), None)
+    if other:
+        raise DrawingError(source, f"this is {other}, not an SVG: trace or convert it to one first")
     return data
 
 

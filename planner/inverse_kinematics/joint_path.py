@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import solve_banded
 
-from planner.arrays import FloatArray, IntArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.ragged import starts_of, within
 from planner.spline import evaluate, evaluate_at, first_controls, halved, weights
 
@@ -32,6 +32,10 @@ class JointPaths:
     def halved(self) -> JointPaths:
         """The same paths with every cell cut in two, sigma counting the new cells."""
         return JointPaths(2 * self.n_cells, halved(self.controls, self.n_cells, DEGREE))
+
+    def subset(self, chosen: BoolArray) -> JointPaths:
+        """Only the paths of the mask (n_paths,)."""
+        return JointPaths(self.n_cells[chosen], self.controls[np.repeat(chosen, self.n_cells + DEGREE)])
 
     def at(self, cells: IntArray, fractions: FloatArray, derivative: int = 0) -> FloatArray:
         """(n, n_joints) at one fraction in each of the named cells (counted over all paths)."""

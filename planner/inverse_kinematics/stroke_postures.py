@@ -86,11 +86,19 @@ def joint_paths(arm: Arm, method: Method, paths: PenPaths, weights: PostureWeigh
     else:
         references = postures_at(arm, method, tips, weights)
     free, exact = project(kinematics_of(arm), np.nan_to_num(references), tips)
+    exact &= np.isfinite(free).all(axis=1)  # where it ran away, the spline still needs numbers
+    free = np.where(np.isfinite(free), free, 0.0)
     splines = interpolate(paths.n_cells, arm.complete(free))
-    middles = kinematics_of(arm).tip_mm(kinematics_of(arm).free_of(splines.positions(_MIDDLE)[:, 0]))
+    return splines, _obstacles(arm, splines, tips, exact, per_path, strays_mm(arm, paths, splines) > _STRAYED_MM)
+
+
+def strays_mm(arm: Arm, paths: PenPaths, splines: JointPaths) -> FloatArray:
+    """(total cells,) how far the tip is off its path in the middle between two knots."""
+    kinematics = kinematics_of(arm)
+    middles = kinematics.tip_mm(kinematics.free_of(splines.positions(_MIDDLE)[:, 0]))
     middles[:, :2] -= paths.points(_MIDDLE)[:, 0]
-    strayed = np.abs(middles).max(axis=1) > _STRAYED_MM
-    return splines, _obstacles(arm, splines, tips, exact, per_path, strayed)
+    strays: FloatArray = np.abs(middles).max(axis=1)
+    return strays
 
 
 def collision_obstacles(arm: Arm, samples: Sequence[FloatArray]) -> dict[int, Obstacle]:
@@ -125,7 +133,7 @@ def _sequential_references(arm: Arm, method: Method, tips_mm: FloatArray) -> Flo
     count = max(int(np.ceil(travelled[-1] / TARGET_SPACING_MM)), 1) + 1
     wanted = np.searchsorted(travelled, np.linspace(0.0, travelled[-1], count))
     chosen = np.unique(np.concatenate(([0], np.minimum(wanted, len(tips_mm) - 1), [len(tips_mm) - 1])))
-    postures = _sequence(arm, method, tips_mm[chosen])
+    postures = np.nan_to_num(_sequence(arm, method, tips_mm[chosen]))
     spline = make_interp_spline(chosen, postures, k=min(5, 2 * ((len(chosen) - 2) // 2) + 1))
     references: FloatArray = np.ascontiguousarray(spline(np.arange(len(tips_mm))))
     return references

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arrays import FloatArray, IntArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.ragged import starts_of, within
 from planner.spline import evaluate, evaluate_at, first_controls, halved
 
@@ -58,13 +58,27 @@ class PenPaths:
         """(total cells, n_fractions, 2) points, or derivatives by sigma, at fractions of every cell."""
         return evaluate(self.controls_mm, first_controls(self.n_cells, DEGREE), fractions, DEGREE, derivative)
 
+    def at(self, cells: IntArray, fractions: FloatArray) -> FloatArray:
+        """(n, 2) points at one fraction in each of the named cells (counted over all paths)."""
+        return evaluate_at(self.controls_mm, first_controls(self.n_cells, DEGREE)[cells], fractions, DEGREE)
+
     def halved(self) -> PenPaths:
         """The same paths with every cell cut in two, sigma counting the new cells."""
         return PenPaths(2 * self.n_cells, halved(self.controls_mm, self.n_cells, DEGREE))
 
+    def subset(self, chosen: BoolArray) -> PenPaths:
+        """Only the paths of the mask (n_paths,)."""
+        return PenPaths(self.n_cells[chosen], self.controls_mm[np.repeat(chosen, self.n_cells + DEGREE)])
+
 
 def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPaths:
-    """Smooth paths that stay within the tolerance of their polylines, and these of them.
+    """Smooth paths as `smoothed` makes them."""
+    return smoothed(polylines, tolerance_mm)[0]
+
+
+def smoothed(polylines: Sequence[FloatArray], tolerance_mm: float) -> tuple[PenPaths, BoolArray]:
+    """Smooth paths that stay within the tolerance of their polylines, and these of them; and which of them (n_paths,)
+    do so indeed: rounds of refinement come to an end.
 
     polylines: each (n >= 2, 2) in mm with distinct neighbours. Work is linear in the number of points.
     """
@@ -82,7 +96,9 @@ def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPat
         finer = used_mm[worst] * np.clip(share * tolerance_mm / cut_mm[worst], 0.25, most)
         anchors_mm = np.concatenate((anchors_mm, at_mm[worst]))
         spacings_mm = np.concatenate((spacings_mm, finer))
-    return paths
+    reached = np.ones(len(polylines), dtype=bool)
+    reached[np.searchsorted(line.begin_mm, at_mm[worst], side="right") - 1] = False
+    return paths, reached
 
 
 def expected_cells(polylines: Sequence[FloatArray], tolerance_mm: float) -> list[FloatArray]:

@@ -14,6 +14,7 @@ from planner.comparison.compare import Comparison, MethodResult
 from planner.comparison.figures import LIMIT_SLACK, beyond_limits
 from planner.comparison.measured import Measured
 from planner.comparison.targets import Targets
+from planner.counted import counted
 from planner.plots.comparison_look import line_of, method_handles, shown
 from planner.plots.look import LIMIT_DASHES, USUAL, Look
 from planner.plots.paper import place_axes, view_mm
@@ -58,7 +59,8 @@ def plot_along_drawing(comparison: Comparison, look: Look = USUAL) -> Figure:
             panel.tick_params(labelbottom=panel is panels[-1])
         panels[-1].set_xlabel("way drawn, strokes one after the other (mm)")
         sheet.figure.align_ylabels(panels)
-        remark = f"{len(targets.tips_mm)} targets along {len(targets.firsts)} strokes, seen from behind the base"
+        remark = (f"{counted(len(targets.tips_mm), 'target')} along {counted(len(targets.firsts), 'stroke')}, "
+                  "seen from behind the base")
         return sheet.finish(f"methods along a drawing on {arm.name}", remark,
                             [*method_handles([result for result, _ in able]), *_marks(look)], _TITLE)
 

@@ -13,6 +13,7 @@ from planner.arms.kinematics import kinematics_of
 from planner.arrays import FloatArray
 from planner.comparison.compare import Comparison
 from planner.comparison.convergence import Convergence
+from planner.counted import counted
 from planner.inverse_kinematics.dls import DOCUMENTED, MM_PER_CM
 from planner.plots.comparison_look import Line, line_of, method_handles, shown
 from planner.plots.look import LIMIT_DASHES, USUAL, Look
@@ -54,8 +55,8 @@ def plot_single(comparison: Comparison, look: Look = USUAL) -> Figure:
 
 def _told(found: Convergence) -> str:
     count = len(found.steps) - 1
-    ended = f"converged after {count} iterations" if found.converged else f"not converged after {count} iterations"
-    return f"documented damped least squares {ended}"
+    ended = "converged" if found.converged else "not converged"
+    return f"documented damped least squares {ended} after {counted(count, 'iteration')}"
 
 
 def _draw_convergence(axes: Axes, found: Convergence, look: Look) -> None:

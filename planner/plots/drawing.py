@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from planner.arrays import FloatArray
+from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
 from planner.plots.look import USUAL, Look
@@ -47,7 +48,8 @@ def plot_drawing(
         _line(axes, travel_line, "travel, pen up", color=colours.travel, linewidth=0.35, zorder=2.5)
         _line(axes, drawn_line, "drawn", color=colours.drawn, linewidth=0.11 * look.letter_pt, zorder=3)
         _dots(axes, _taps(trajectory, xy), "tap", color=colours.drawn, size=2.2, zorder=3)
-        remark = (f"{int(trajectory.stroke.max(initial=-1)) + 1} strokes, {_length_mm(drawn_line):.0f} mm drawn and "
+        n_strokes = int(trajectory.stroke.max(initial=-1)) + 1
+        remark = (f"{counted(n_strokes, 'stroke')}, {_length_mm(drawn_line):.0f} mm drawn and "
                   f"{_length_mm(travel_line):.0f} mm travelled in {trajectory.duration_s:.4g} s "
                   f"on {trajectory.arm}, seen from behind its base")
         return sheet.finish(trajectory.drawing or "trajectory", remark, axes.get_legend_handles_labels()[0])

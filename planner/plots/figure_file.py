@@ -9,6 +9,7 @@ from typing import IO, cast
 from matplotlib.figure import Figure
 
 from planner.errors import UsageError
+from planner.files import is_standard_output
 from planner.plots.look import USUAL, Look
 from planner.trajectory import written_aside
 
@@ -17,7 +18,10 @@ _UNDATED: dict[str, dict[str, None]] = {"png": {}, "svg": {"Date": None}, "pdf":
 
 
 def picture_format(target: Path) -> str:
-    """"png", "svg" or "pdf", from the suffix in either case. Errors: UsageError naming those that work."""
+    """"png", "svg" or "pdf", from the suffix in either case; "png" for standard output. Errors: UsageError naming those
+    that work."""
+    if not target.suffix and is_standard_output(target):
+        return "png"
     suffix = target.suffix.lower().removeprefix(".")
     if suffix not in _UNDATED:
         given = f"'{target.suffix}'" if target.suffix else "no suffix"

@@ -17,6 +17,7 @@ from PIL import Image
 
 from planner.arrays import FloatArray
 from planner.errors import OutputError, UsageError
+from planner.files import is_standard_output
 from planner.plots.film import Film, Frame
 from planner.plots.look import USUAL, Colours, Look
 from planner.plots.motion import Motion
@@ -32,10 +33,12 @@ _SHADES = 9  # from a ground to a colour on it, for the edges of lines
 
 
 def film_format(target: Path) -> str:
-    """"html", "gif" or "mp4", from the suffix in either case.
+    """"html", "gif" or "mp4", from the suffix in either case; "gif" for standard output.
 
     Errors: UsageError naming those that work, or where there is no ffmpeg to make an MP4.
     """
+    if not target.suffix and is_standard_output(target):
+        return "gif"
     suffix = target.suffix.lower().removeprefix(".")
     if suffix not in FORMATS:
         given = f"'{target.suffix}'" if target.suffix else "no suffix"

@@ -49,7 +49,7 @@ class Colours:
     travel: str
     lifting: str
     lowering: str
-    dwelling: str
+    resting: str
     link: str
     scale: tuple[float, float]
 
@@ -61,11 +61,11 @@ _COLOURS = {
     Theme.LIGHT: Colours(
         surface="#FFFFFF", ink="#222222", quiet="#555555", edge="#777777", ring="#F1F1EE", ring_edge="#B5B5AE",
         drawn="#0072B2", limit="#D55E00", wanted="#F2C66D", travel="#8C8C8C", lifting="#009E73", lowering="#D55E00",
-        dwelling="#CC79A7", link="#3C4246", scale=(0.0, 0.88)),
+        resting="#CC79A7", link="#3C4246", scale=(0.0, 0.88)),
     Theme.DARK: Colours(
         surface="#15181B", ink="#E8E8E4", quiet="#ABB0B3", edge="#83898D", ring="#20262A", ring_edge="#4B5358",
         drawn="#56B4E9", limit="#F08A3C", wanted="#5E4A16", travel="#8C9296", lifting="#2BC79A", lowering="#F08A3C",
-        dwelling="#D998BC", link="#C9CDCF", scale=(0.2, 1.0)),
+        resting="#D998BC", link="#C9CDCF", scale=(0.2, 1.0)),
 }
 _SIZES = {Size.PAPER: (180 / 25.4, 7.0, 300.0), Size.SCREEN: (12.8, 9.5, 150.0)}
 

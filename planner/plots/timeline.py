@@ -1,4 +1,4 @@
-"""The timeline of a trajectory: when it lowers, dwells, draws, lifts and travels, and how long altogether."""
+"""The timeline of a trajectory: when it lowers, rests, draws, lifts and travels, and how long altogether."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 
 from planner.arrays import FloatArray, IntArray
+from planner.counted import counted
+from planner.phases import Phase, phases_of, seconds_in
 from planner.plots.look import USUAL, Look
-from planner.plots.phases import Phase, phases_of, seconds_in
 from planner.plots.samples import min_max_envelope, spans_where, window_s
 from planner.plots.sheet import Sheet
 from planner.trajectory import Trajectory
@@ -48,7 +49,7 @@ def plot_timeline(trajectory: Trajectory, tip_mm: FloatArray, clearance_mm: floa
         rows.tick_params(labelbottom=False)
         height.set_xlim(begin_s, max(last, first + 1) / trajectory.rate_hz)
         n_strokes = len(np.unique(trajectory.stroke[first:last + 1][trajectory.pen[first:last + 1]]))
-        remark = (f"{n_strokes} strokes in {totals_s.sum():.4g} s"
+        remark = (f"{counted(n_strokes, 'stroke')} in {totals_s.sum():.4g} s"
                   + (f", {begin_s:g} to {last / trajectory.rate_hz:.6g} s of {trajectory.duration_s:.4g} s"
                      if last - first < trajectory.n_samples - 1 else "")
                   + f" on {trajectory.arm}; lifting and lowering are below the clearance of {clearance_mm:g} mm")
@@ -57,7 +58,7 @@ def plot_timeline(trajectory: Trajectory, tip_mm: FloatArray, clearance_mm: floa
 
 def _colour(phase: Phase, look: Look) -> str:
     colours = look.colours
-    return {Phase.LOWERING: colours.lowering, Phase.DWELLING: colours.dwelling, Phase.DRAWING: colours.drawn,
+    return {Phase.LOWERING: colours.lowering, Phase.RESTING: colours.resting, Phase.DRAWING: colours.drawn,
             Phase.LIFTING: colours.lifting, Phase.TRAVELLING: colours.travel}[phase]
 
 

@@ -57,7 +57,7 @@ def pictures(trajectory: Trajectory, arm: Arm, drawing: Drawing, tip_mm: FloatAr
                        lambda look: plot_error(trajectory, tip_mm, error_mm, settings.tolerance_mm, canvas_mm, reach_mm,
                                                look))
     yield _picture("Time", "When the arm lowers the pen, rests, draws, lifts and travels, told from the height of the "
-                   "tip at the samples: the plan's own account above counts by its moves, and differs a little.",
+                   "tip at the samples, as in the account above.",
                    lambda look: plot_timeline(trajectory, tip_mm, arm.pen.clearance_mm, look))
     yield _picture("Joints", "Position, velocity, acceleration and jerk of every joint, with the arm's limits.",
                    lambda look: plot_profiles(trajectory, arm, look))

@@ -20,8 +20,8 @@ from planner.plots.look import Theme
 from planner.report.markup import Markup, clean, definitions, element, joined, section, table
 from planner.report.pictures import pictures
 from planner.report.shares import QUANTITIES, LargestShare, largest_shares
-from planner.report.strokes import StrokeFigures, stroke_figures
 from planner.settings import PlanSettings
+from planner.stroke_figures import StrokeFigures, stroke_figures
 from planner.summary import PlanSummary, clock
 from planner.trajectory import TRAVELLING, Trajectory, written_aside
 

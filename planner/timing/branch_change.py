@@ -10,7 +10,7 @@ import numpy as np
 
 from planner.arms.kinematics import Kinematics
 from planner.arms.link_clearance import link_clearance
-from planner.arms.posture_samples import LINK_ROOM_MM
+from planner.arms.posture_tests import LINK_ROOM_MM
 from planner.arrays import FloatArray
 from planner.timing.hops import Hop, HopRules, Touch, plan_hops
 from planner.timing.leap_choice import coordinate_limits

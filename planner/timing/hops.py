@@ -9,8 +9,8 @@ quickest way.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -19,44 +19,57 @@ from planner.arms.link_clearance import Collision
 from planner.arms.projection import project
 from planner.arms.quickest_lift import quickest_lifts
 from planner.arrays import BoolArray, FloatArray
+from planner.timing.between_samples import hop_excess
 from planner.timing.leap_choice import (
     RESTING_SHARE,
     Slopes,
     coordinate_limits,
-    fall_aim,
+    quickest_leaps,
     rest_of,
-    shares_and_aims,
     turning_acceleration,
 )
+from planner.timing.length_bound import MOST_SAMPLES_OF_A_HOP, require_bounded
 from planner.timing.limits import Limits
-from planner.timing.ruckig_profile import RestToRest, between_states, rest_to_rest
+from planner.timing.ruckig_profile import NoSuchMove, RestToRest, between_states, rest_to_rest
 
 _PROBES = 9
 _HEIGHT_PROBES = 33
 _FINE = 4
 """Samples per period at which limits are checked."""
-_ABOUT = (0.95, 1.0, 1.05, 1.1)
+_TRIED = 40
+"""How many of the quickest leaps by formulas are made at most, for each hop."""
+_WORTH = 0.98
+"""Share of the time of the best so far that a leap has to be below, by formulas, to be made."""
+_ABOUT = (0.95, 1.0, 1.05)
 """Heights to aim at about the one that formulas find best, as they rank only."""
+_SLOWER, _MARGIN = 1.5, 0.98
+"""Most that a hop is slowed by at a time for the tip to keep to its way between samples, and a little beyond need."""
+_HELPED = 0.97
+"""Slowing has helped where the tip strays by less than this share of before."""
+_SAMPLES_AT_ONCE = 100_000
+_TOO_SLOW = "choose a higher --lowering-speed, a lower --rate or --lift, or raise the limits of the arm's joints"
 _TURN_MARGIN = 0.999
 """Share of the braking that limits allow at a turn: at the very limit rounding decides whether Ruckig accepts."""
 
 
 @dataclass(frozen=True, slots=True)
 class HopRules:
-    """Heights in mm above the paper, the cap on the speed of lowering, and the sample rate."""
+    """Heights in mm above the paper, the cap on the speed of lowering, the sample rate, and how far the tip may be off
+    its way between samples."""
 
     clearance_mm: float
     lift_mm: float
     lowering_speed_mm_s: float
     rate_hz: float
+    tolerance_mm: float
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Hop:
     """Joint samples (n_samples, n_joints) of a hop, both ends included, and the durations of its phases in s.
 
-    exact: False where the pen could not be kept on its way, or a joint left its limits. collision: where links would
-    come too close.
+    exact: False where the pen could not be kept on its way, or a joint left its limits. held: whether the tip is within
+    the tolerance between samples. collision: where links would come too close.
     """
 
     joints: FloatArray
@@ -64,6 +77,7 @@ class Hop:
     travelling_s: float
     lowering_s: float
     exact: bool
+    held: bool = True
     collision: Collision | None = None
 
 
@@ -78,16 +92,49 @@ class Touch:
 def plan_hops(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Sequence[Touch | None],
               meet: Sequence[Touch | None]) -> list[Hop]:
     """Hops from each `leave` to the `meet` of the same index. Where one of the two is None the hop begins, or
-    ends, at the lift height above the other, as at the two ends of a drawing."""
+    ends, at the lift height above the other, as at the two ends of a drawing. Errors: UsageError where one takes too
+    long to be part of a plan."""
     shapes = [_Shape.of(rules, one, other) for one, other in zip(leave, meet, strict=True)]
     lifts = quickest_lifts(kinematics, limits.jerk, np.concatenate([shape.postures for shape in shapes]))
-    shapes = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
+    lifted = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
+    hops = _along(kinematics, limits, rules, lifted)
+    # The quickest way up may lead a joint out of its range where the way with the least motion does not.
+    out = [index for index, hop in enumerate(hops) if not hop.exact]
+    for index, hop in zip(out, _along(kinematics, limits, rules, [shapes[index] for index in out]), strict=True):
+        hops[index] = hop if hop.exact else hops[index]
+    return hops
+
+
+def _along(kinematics: Kinematics, limits: Limits, rules: HopRules, shapes: Sequence[_Shape]) -> list[Hop]:
+    """Hops of these shapes, as quick as they may be."""
+    if not shapes:
+        return []
     plans = _timed(shapes, _joint_slopes(kinematics, shapes), limits, rules)
+    for plan in plans:
+        require_bounded(plan.duration_s, rules.rate_hz, "one pen-up move", _TOO_SLOW, MOST_SAMPLES_OF_A_HOP)
     fine, _ = _sampled(kinematics, plans, _FINE * rules.rate_hz)
     plans = [plan.slowed(limits.slowing_of(joints, 1 / (_FINE * rules.rate_hz)) * 1.0005, rules)
              for plan, joints in zip(plans, fine, strict=True)]
-    joints, exact = _sampled(kinematics, plans, rules.rate_hz)
-    return [plan.hop(samples, bool(good.all())) for plan, samples, good in zip(plans, joints, exact, strict=True)]
+    return _held(kinematics, plans, rules)
+
+
+def _held(kinematics: Kinematics, plans: Sequence[_Timed], rules: HopRules) -> list[Hop]:
+    """The hops, each as slow as it has to be for the tip to keep to its way between samples. One that slowing does not
+    help, as where postures jump to another branch, stays as quick as it was before."""
+    hops: dict[int, Hop] = {}
+    left, before = np.arange(len(plans)), np.full(len(plans), np.inf)
+    while len(left):
+        joints, exact = _sampled(kinematics, plans, rules.rate_hz)
+        excess = hop_excess(kinematics, joints, [plan.shape.ends_mm for plan in plans],
+                            [plan.shape.touches for plan in plans], rules.clearance_mm, rules.tolerance_mm)
+        helped = excess < _HELPED * before
+        hops.update((index, plan.hop(samples, bool(good.all()), over <= 1.0)) for index, plan, samples, good, over, kept
+                    in zip(left.tolist(), plans, joints, exact, excess.tolist(), helped.tolist(), strict=True) if kept)
+        over = np.flatnonzero(helped & (excess > 1.0))
+        plans = [plans[index].slowed(plans[index].factor * min(np.sqrt(excess[index]), _SLOWER) / _MARGIN, rules)
+                 for index in over.tolist()]
+        left, before = left[over], excess[over]
+    return [hops[index] for index in range(len(hops))]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -110,6 +157,21 @@ class _Shape:
         postures = np.stack((one.posture, other.posture))
         return _Shape(polar, postures, np.zeros_like(postures),
                       0.0 if leave else rules.lift_mm, 0.0 if meet else rules.lift_mm)
+
+    @property
+    def ends_mm(self) -> FloatArray:
+        """(2, 2) the places over which it begins and ends."""
+        return self.tip_mm(np.array([0.0, 1.0]), np.zeros(2))[:, :2]
+
+    @property
+    def is_still(self) -> bool:
+        """Whether it ends over the place where it begins."""
+        return float(np.abs(self.polar[1] - self.polar[0]).max()) < 1e-9
+
+    @property
+    def touches(self) -> tuple[bool, bool]:
+        """Whether it begins, and ends, on the paper."""
+        return self.from_mm == 0, self.to_mm == 0
 
     def tip_mm(self, along: FloatArray, height_mm: FloatArray) -> FloatArray:
         """(n, 3) at fractions of the way and heights."""
@@ -144,12 +206,14 @@ class _Timed:
     def duration_s(self) -> float:
         return self.natural_s * self.factor
 
-    def stays_between(self, rules: HopRules) -> bool:
-        """Whether the motion above the clearance never dips below it nor leaves the lift height."""
-        if self.above is None:
-            return True
+    def stays_between(self, rules: HopRules, handover_mm: float) -> bool:
+        """Whether the motion above the handover never dips below it nor leaves the lift height, and lasts for a sample.
+        """
+        assert self.above is not None
+        if self.above.duration_s * rules.rate_hz < 1.0:
+            return False
         heights = self.above.at(np.linspace(0.0, self.above.duration_s, _HEIGHT_PROBES))
-        return bool(heights.min() >= rules.clearance_mm - 1e-6 and heights.max() <= rules.lift_mm)
+        return bool(heights.min() >= handover_mm - 1e-6 and heights.max() <= rules.lift_mm)
 
     def slowed(self, needed: float, rules: HopRules) -> _Timed:
         """Slowed by what is needed, or sped up by what is left but for the cap on lowering, and on to whole sample
@@ -157,6 +221,7 @@ class _Timed:
         falls = (self.down.highest_speed, -self.above.lowest_velocity if self.above else 0.0)
         lowering = max(falls) / rules.lowering_speed_mm_s
         duration = self.natural_s * max(needed, lowering)
+        require_bounded(duration, rules.rate_hz, "one pen-up move", _TOO_SLOW, MOST_SAMPLES_OF_A_HOP)
         whole = max(np.ceil(duration * rules.rate_hz - 1e-9), 1.0) / rules.rate_hz
         return replace(self, factor=float(whole / self.natural_s))
 
@@ -170,10 +235,10 @@ class _Timed:
             height[clear] = self.above.at(times[clear] - self.over_begins_s)
         return self.over.at(times - self.over_begins_s), height
 
-    def hop(self, joints: FloatArray, exact: bool) -> Hop:
+    def hop(self, joints: FloatArray, exact: bool, held: bool) -> Hop:
         lifting = self.over_begins_s * self.factor
         lowering = (self.natural_s - self.clear_until_s) * self.factor
-        return Hop(joints, lifting, max(self.duration_s - lifting - lowering, 0.0), lowering, exact)
+        return Hop(joints, lifting, max(self.duration_s - lifting - lowering, 0.0), lowering, exact, held)
 
 
 def _joint_slopes(kinematics: Kinematics, shapes: Sequence[_Shape]) -> Slopes:
@@ -190,19 +255,32 @@ def _joint_slopes(kinematics: Kinematics, shapes: Sequence[_Shape]) -> Slopes:
 
 
 def _timed(shapes: Sequence[_Shape], slopes: Slopes, limits: Limits, rules: HopRules) -> list[_Timed]:
-    """The motions of every hop, within the limits as far as joints follow their slopes."""
-    shares, aims = shares_and_aims(slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s)
-    over = _rows(coordinate_limits(slopes.along, rest_of(slopes, limits, shares)))
-    up = _rows(coordinate_limits(slopes.lifting, limits))
-    down = _rows(coordinate_limits(slopes.lowering, limits))
-    plans = []
-    for shape, share, aim, of_over, of_up, of_down in zip(shapes, shares.tolist(), aims.tolist(), over, up, down,
-                                                          strict=True):
-        still = float(np.abs(shape.polar[1] - shape.polar[0]).max()) < 1e-9
-        way = rest_to_rest(0.0 if still else 1.0, *of_over)
-        heights = _Heights(of_up, (min(of_down[0], rules.lowering_speed_mm_s), *of_down[1:]), share)
-        plans.append(_leap(shape, way, heights, rules, aim))
-    return plans
+    """The quickest motions of every hop, within the limits as far as joints follow their slopes."""
+    up, down = (_rows(coordinate_limits(slope, limits)) for slope in (slopes.lifting, slopes.lowering))
+    heights = [_Heights(of_up, (min(of_down[0], rules.lowering_speed_mm_s), *of_down[1:]))
+               for of_up, of_down in zip(up, down, strict=True)]
+    rest = _ways(shapes, slopes, limits, np.full(len(shapes), RESTING_SHARE))
+    best = [_resting_leap(*each, rules) for each in zip(shapes, rest, heights, strict=True)]
+    leaps = quickest_leaps(slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s)
+    can_turn = np.array([shape.touches == (True, True) for shape in shapes])
+    for column in range(min(_TRIED, leaps.seconds.shape[1])):
+        so_far_s = np.array([leap.natural_s for leap in best])
+        hops = np.flatnonzero(can_turn & (leaps.seconds[:, column] < _WORTH * so_far_s))
+        if not len(hops):  # what comes later takes longer still
+            break
+        chosen = [shapes[hop] for hop in hops.tolist()]
+        ways = _ways(chosen, slopes.subset(hops), limits, leaps.share[hops, column])
+        aims = map(_Aims, *(getattr(leaps, field.name)[hops, column].tolist() for field in fields(_Aims)))
+        for hop, shape, way, aim in zip(hops.tolist(), chosen, ways, aims, strict=True):
+            best[hop] = min((best[hop], *_turning_leaps(shape, way, heights[hop], rules, aim)),
+                            key=lambda leap: leap.natural_s)
+    return best
+
+
+def _ways(shapes: Sequence[_Shape], slopes: Slopes, limits: Limits, share: FloatArray) -> list[RestToRest]:
+    """The move over the paper of each hop, with the limits that a height with that share (n_hops,) of them leaves."""
+    bounds = _rows(coordinate_limits(slopes.along, rest_of(slopes, limits, share)))
+    return [rest_to_rest(0.0 if shape.is_still else 1.0, *each) for shape, each in zip(shapes, bounds, strict=True)]
 
 
 _Bounds = tuple[float, float, float]
@@ -211,42 +289,53 @@ _Bounds = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class _Heights:
-    """Bounds of the height near both ends, and the share of them that is left for it above the clearance."""
+    """Bounds of the height near both ends."""
 
     up: _Bounds
     down: _Bounds
+
+
+@dataclass(frozen=True, slots=True)
+class _Aims:
+    """What a leap is to be like: a row of `Leaps`."""
+
     share: float
+    handover_mm: float
+    rise_mm: float
+    fall_mm: float
+    fall_mm_s: float
 
 
 def _rows(limits: Limits) -> list[_Bounds]:
     return list(zip(limits.velocity.tolist(), limits.acceleration.tolist(), limits.jerk.tolist(), strict=True))
 
 
-def _leap(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules, aim_mm: float) -> _Timed:
-    """The leap that aims at about that height and turns without a halt; the one that rests at the lift height where an
-    end is in the air, or where the others are too high or too low."""
-    turning = []
-    if not (shape.from_mm or shape.to_mm) and np.isfinite(aim_mm):
-        turning = [_turning_leap(shape, over, heights, rules, aim_mm * about) for about in _ABOUT]
-    return min((leap for leap in turning if leap.stays_between(rules)), key=lambda leap: leap.natural_s,
-               default=_resting_leap(shape, over, heights, rules))
+def _turning_leaps(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules, aims: _Aims
+                   ) -> Iterator[_Timed]:
+    """The leaps that aim at about that height and turn without a halt, those that there are."""
+    for about in _ABOUT:
+        try:
+            leap = _turning_leap(shape, over, heights, replace(aims, rise_mm=about * aims.rise_mm))
+        except NoSuchMove:
+            continue
+        if leap.stays_between(rules, aims.handover_mm):
+            yield leap
 
 
-def _turning_leap(shape: _Shape, over: RestToRest, heights: _Heights, rules: HopRules, aim_mm: float) -> _Timed:
-    """The leap whose rise aims at a height."""
-    up, down = _rise(aim_mm, heights.up), _rise(fall_aim(rules.clearance_mm), heights.down)
-    clear = [rise.time_at(rules.clearance_mm) for rise in (up, down)]
+def _turning_leap(shape: _Shape, over: RestToRest, heights: _Heights, aims: _Aims) -> _Timed:
+    """The leap whose rise and fall aim at these heights. Errors: NoSuchMove."""
+    slow = (min(heights.down[0], aims.fall_mm_s), *heights.down[1:])
+    up, down = _rise(aims.rise_mm, heights.up), _rise(aims.fall_mm, slow)
+    clear = [rise.time_at(aims.handover_mm) for rise in (up, down)]
     (up_speed, up_braking), (down_speed, down_braking) = (
         rise.state_at(time) for rise, time in zip((up, down), clear, strict=True))
-    above = between_states(rules.clearance_mm, (up_speed, up_braking), (-down_speed, down_braking),
-                           -heights.down[0] / _TURN_MARGIN, _above(heights), over.duration_s)
+    # Above the handover any acceleration will do: that of its ends is within the limits, and jerk keeps others small.
+    push = max(min(heights.up[1], heights.down[1]), abs(up_braking), abs(down_braking))
+    above = between_states(aims.handover_mm, (up_speed, up_braking), (-down_speed, down_braking),
+                           -heights.down[0] / _TURN_MARGIN,
+                           (heights.up[0], push, aims.share * min(heights.up[2], heights.down[2])), over.duration_s)
     until = clear[0] + above.duration_s
     return _Timed(shape, up, over, down, above, clear[0], until, until + clear[1])
-
-
-def _above(heights: _Heights) -> _Bounds:
-    """Bounds of the height above the clearance: its share of the jerk, and any acceleration, which jerk keeps small."""
-    return (heights.up[0], min(heights.up[1], heights.down[1]), heights.share * min(heights.up[2], heights.down[2]))
 
 
 def _rise(top_mm: float, bounds: _Bounds) -> RestToRest:
@@ -268,7 +357,18 @@ def _resting_leap(shape: _Shape, over: RestToRest, heights: _Heights, rules: Hop
 
 def _sampled(kinematics: Kinematics, plans: Sequence[_Timed], rate_hz: float
              ) -> tuple[list[FloatArray], list[BoolArray]]:
-    """Joint samples of every hop, and where they are exact and within limits."""
+    """Joint samples of every hop, and where they are exact and within limits; some hops at a time."""
+    group = (np.cumsum([plan.duration_s for plan in plans]) * rate_hz) // _SAMPLES_AT_ONCE
+    joints, exact = [], []
+    for one in np.unique(group):
+        more, good = _sampled_together(kinematics, [plans[k] for k in np.flatnonzero(group == one).tolist()], rate_hz)
+        joints += more
+        exact += good
+    return joints, exact
+
+
+def _sampled_together(kinematics: Kinematics, plans: Sequence[_Timed], rate_hz: float
+                      ) -> tuple[list[FloatArray], list[BoolArray]]:
     references, tips, counts = [], [], []
     for plan in plans:
         count = round(plan.duration_s * rate_hz) if plan.factor != 1.0 else int(np.ceil(plan.duration_s * rate_hz))

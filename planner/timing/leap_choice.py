@@ -1,28 +1,32 @@
 """How high a hop goes, and how it shares the joints' limits between height and place.
 
-The pen may move over the paper only while it is above the clearance, so a hop lasts as long as the way up to the
-clearance, the stay above it, and the way down from it. A rise that aims higher passes the clearance sooner but stays
-above it longer; a larger share for the height leaves less for the move over the paper. Both are chosen by formulas of
-jerk-limited motion that leave acceleration limits of the height out: they only rank, the motions themselves are
-made afterwards and kept within all limits.
+The pen may move over the paper only while it is above the clearance. At some height, the clearance or above it, the
+height hands over to the move: below it has all of the joints' limits, above it a share of them. A hop so lasts as long
+as the way up to the handover, the stay above it, and the way down from it. A rise that aims higher passes the handover
+sooner but stays above it longer; a larger share for the height leaves less for the move. All are chosen by formulas of
+jerk-limited motion that leave acceleration limits of the height out: they only rank, the motions themselves are made
+afterwards and kept within all limits.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from planner.arrays import FloatArray
+from planner.arrays import FloatArray, IntArray
 from planner.timing.limits import Limits
 
-_LOWEST_AIM, _HIGHEST_AIM = 1.02, 1.94
-"""Heights that the rise to the clearance may aim at, in clearances: the highest sample of a hop must still be above
-the clearance, and the pen must brake already where it passes it."""
+_AIMS = 1.02, 1.94
+"""Heights that the rise to the handover may aim at, in heights of the handover: the highest sample of a hop must still
+be above it, and the pen must brake already where it passes it."""
+_N_RISES, _N_FALLS = 10, 5
+_HANDOVERS_MM, _N_HANDOVERS = 2.0 ** np.arange(-10, 10, 0.5), 7
+_SPEEDS_MM_S, _N_SPEEDS = 30.0 * 2.0 ** np.arange(6, -12, -0.5), 3
+"""Heights at which to hand over and speeds of lowering that are tried, and how many beside those that rules give."""
 RESTING_SHARE = 0.6
 """Share of the limits for the height of a hop that is at rest at the lift height."""
-_SHARES = np.linspace(0.1, 1.0, 19)
-_N_AIMS = 12
+_SHARES = np.linspace(0.1, 1.0, 13)
 _DEPTH_ROUNDS = 6
 _LEAST_REST = 1e-3
 """Share of its limits that a joint keeps for the move over the paper at least, lest that take for ever."""
@@ -40,6 +44,9 @@ class Slopes:
     lifting: FloatArray
     lowering: FloatArray
     along: FloatArray
+
+    def subset(self, hops: IntArray) -> Slopes:
+        return Slopes(self.lifting[hops], self.lowering[hops], self.along[hops])
 
 
 def coordinate_limits(slope: FloatArray, limits: Limits) -> Limits:
@@ -60,39 +67,65 @@ def rest_of(slopes: Slopes, limits: Limits, share: FloatArray) -> Limits:
     return Limits(np.broadcast_to(limits.velocity, rest[0].shape), *rest)
 
 
-def shares_and_aims(slopes: Slopes, limits: Limits, clearance_mm: float, lift_mm: float, lowering_mm_s: float
-                    ) -> tuple[FloatArray, FloatArray]:
-    """Of the hops that end soonest: (n_hops,) share of the limits for the height while the pen is above the
-    clearance, and the height in mm that the rise to the clearance aims at, NaN where the lift height leaves no room.
+@dataclass(frozen=True, eq=False, slots=True)
+class Leaps:
+    """Leaps of each hop, all (n_hops, n_leaps): the share of the limits that the height has above the handover, the
+    height of the handover, those that the rise and the fall (backwards, as a rise) aim at, in mm, and the speed in mm/s
+    that the fall keeps below. seconds: what the formulas make of it, inf where there is no such leap."""
 
-    The way down passes the clearance with no acceleration left (`fall_aim`): what the rise has in excess of the height
-    that leads up to that is then come down at the lowering speed.
+    share: FloatArray
+    handover_mm: FloatArray
+    rise_mm: FloatArray
+    fall_mm: FloatArray
+    fall_mm_s: FloatArray
+    seconds: FloatArray
+
+
+def quickest_leaps(slopes: Slopes, limits: Limits, clearance_mm: float, lift_mm: float, lowering_mm_s: float) -> Leaps:
+    """The quickest leaps of each hop, one for each of some handovers and shares, the quickest first.
+
+    The heights, and the speeds below the cap at which the pen may come down, are the same whatever the clearance and
+    the cap, which only say where the lists end: what a stricter rule allows is tried under a laxer one, too.
     """
-    aims = np.linspace(_LOWEST_AIM, _HIGHEST_AIM, _N_AIMS) * clearance_mm
+    speeds = _SPEEDS_MM_S[lowering_mm_s * (1 - 1e-9) > _SPEEDS_MM_S][:_N_SPEEDS]
+    higher = _HANDOVERS_MM[clearance_mm * (1 + 1e-9) < _HANDOVERS_MM][:_N_HANDOVERS]
+    made = [_quickest_from(slopes, limits, height, lift_mm, np.concatenate(([lowering_mm_s], speeds)))
+            for height in (clearance_mm, *higher.tolist()) if height < lift_mm]
+    none = np.empty((len(slopes.along), 0))
+    columns = [np.concatenate([none, *(getattr(leaps, field.name) for leaps in made)], axis=1)
+               for field in fields(Leaps)]
+    order = np.argsort(columns[-1], axis=1, kind="stable")
+    return Leaps(*(np.take_along_axis(column, order, axis=1) for column in columns))
+
+
+def _quickest_from(slopes: Slopes, limits: Limits, handover_mm: float, lift_mm: float, speeds_mm_s: FloatArray
+                   ) -> Leaps:
+    """The quickest leap for each share that hands over at that height. The fall passes it at any speed up to the first
+    one: what the rise has in excess of the height that leads up to that is come down at this first one."""
+    rises, falls = np.linspace(*_AIMS, _N_RISES) * handover_mm, np.linspace(*_AIMS, _N_FALLS) * handover_mm
     up_jerk, down_jerk = (coordinate_limits(slope, limits).jerk[:, None] for slope in (slopes.lifting, slopes.lowering))
-    below_up_s, up_speed, up_acceleration = _rise(aims, clearance_mm, up_jerk, np.inf)
-    below_down_s, down_speed, down_acceleration = _rise(aims[-1:], clearance_mm, down_jerk, lowering_mm_s)
-    n_hops = len(up_jerk)
-    best_s = np.full(n_hops, np.inf)
-    share, aim = np.full(n_hops, RESTING_SHARE), np.full(n_hops, np.nan)
-    for tried in _SHARES.tolist():
-        over_s = rest_to_rest_s(coordinate_limits(slopes.along, rest_of(slopes, limits, np.full(n_hops, tried))))
-        up_s, up_mm = _brake(up_speed, up_acceleration, tried * up_jerk)
-        down_s, down_mm = _brake(down_speed, down_acceleration, tried * down_jerk)
-        excess_mm = up_mm - down_mm
-        above_s = up_s + down_s + excess_mm / lowering_mm_s
-        whole_s = below_up_s + below_down_s + np.maximum(over_s[:, None], above_s)
-        whole_s[(excess_mm < 0.0) | (clearance_mm + up_mm > lift_mm)] = np.inf
-        at = whole_s.argmin(axis=1)
-        found_s = whole_s[np.arange(n_hops), at]
-        better = found_s < best_s
-        best_s[better], share[better], aim[better] = found_s[better], tried, aims[at][better]
-    return share, aim
-
-
-def fall_aim(clearance_mm: float) -> float:
-    """The height in mm that the rise aims at which, backwards, is the way down from the clearance."""
-    return _HIGHEST_AIM * clearance_mm
+    below_up_s, up_speed, up_acceleration = _rise(rises, handover_mm, up_jerk, np.inf)
+    below_down_s, down_speed, down_acceleration = (
+        np.concatenate(column, axis=1) for column in zip(
+            *(_rise(falls, handover_mm, down_jerk, speed) for speed in speeds_mm_s.tolist()), strict=True))
+    n_hops, cap = len(up_jerk), speeds_mm_s[0]
+    seconds, at = np.empty((n_hops, len(_SHARES))), np.empty((n_hops, len(_SHARES)), dtype=np.int64)
+    for column, share in enumerate(_SHARES.tolist()):
+        over_s = rest_to_rest_s(coordinate_limits(slopes.along, rest_of(slopes, limits, np.full(n_hops, share))))
+        up_s, up_mm = _brake(up_speed, up_acceleration, share * up_jerk)
+        down_s, down_mm = _brake(down_speed, down_acceleration, share * down_jerk)
+        excess_mm = up_mm[:, :, None] - down_mm[:, None]
+        above_s = up_s[:, :, None] + down_s[:, None] + excess_mm / cap
+        whole_s = below_up_s[:, :, None] + below_down_s[:, None] + np.maximum(over_s[:, None, None], above_s)
+        whole_s[(excess_mm < 0.0) | (handover_mm + up_mm[:, :, None] > lift_mm)] = np.inf
+        # Braking that so little jerk cannot end before the pen falls faster than it may.
+        whole_s[up_speed - up_acceleration ** 2 / (2 * share * up_jerk) < -cap] = np.inf
+        at[:, column] = whole_s.reshape(n_hops, -1).argmin(axis=1)
+        seconds[:, column] = np.take_along_axis(whole_s.reshape(n_hops, -1), at[:, column:column + 1], axis=1)[:, 0]
+    rise, fall = np.divmod(at, down_speed.shape[1])
+    speed, aim = np.divmod(fall, len(falls))
+    return Leaps(np.broadcast_to(_SHARES, at.shape), np.full(at.shape, handover_mm), rises[rise], falls[aim],
+                 speeds_mm_s[speed], seconds)
 
 
 def rest_to_rest_s(limits: Limits) -> FloatArray:

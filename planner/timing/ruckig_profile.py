@@ -6,14 +6,24 @@ path, and waypoints would make it call a cloud service.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from dataclasses import dataclass
-from itertools import accumulate
+from itertools import accumulate, chain
 
 import numpy as np
 import ruckig
 
 from planner.arrays import FloatArray
+
+_MIRRORED = 1e-9
+_AMPLE, _SCARCE = 10.0, 1e-3
+"""Speeds and accelerations of a move over 1 at a jerk of 1: more than it can use, and so little that jerk counts for
+nothing."""
+
+
+class NoSuchMove(ArithmeticError):
+    """Ruckig finds no move: this one is out of the question, and others may do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,24 +88,35 @@ def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: fl
     """The fastest such move within the limits, all in units of the coordinate; distance >= 0, limits > 0.
 
     turning: braking that is left at the end, where the coordinate turns round rather than rests; less than both
-    `acceleration` and `sqrt(2 jerk velocity)`.
+    `acceleration` and `sqrt(2 jerk velocity)`. Errors: NoSuchMove, never where turning is 0.
+
+    Ruckig is asked for a move over 1 at a jerk of 1, so that its tolerances fit whatever the scale of the limits. Where
+    speed or acceleration is so scarce that jerk costs no time to speak of, less of it does.
     """
+    if distance <= 0.0:
+        return RestToRest(0.0, (0.0, 0.0), ((0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)))
+    unit_s = max(math.cbrt(distance / jerk), _SCARCE * distance / velocity,
+                 math.sqrt(_SCARCE * distance / acceleration))
+    speed, push = distance / unit_s, distance / unit_s ** 2
     request = ruckig.InputParameter(1)
-    request.current_position, request.target_position = [0.0], [distance]
-    request.max_velocity, request.max_acceleration, request.max_jerk = [velocity], [acceleration], [jerk]
-    request.target_acceleration = [-turning]
-    trajectory = ruckig.Trajectory(1)
-    result = ruckig.Ruckig(1).calculate(request, trajectory)
-    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
-        raise ArithmeticError(f"Ruckig: {result} over {distance:g} within {velocity:g}, {acceleration:g}, {jerk:g}")
-    return RestToRest(distance, *_pieces(trajectory))
+    request.current_position, request.target_position = [0.0], [1.0]
+    request.max_velocity, request.max_acceleration = [min(velocity / speed, _AMPLE)], [min(acceleration / push, _AMPLE)]
+    request.max_jerk = [1.0]
+    request.target_acceleration = [-turning / push]
+    begins_s, states = _calculated(request)
+    units = (distance, speed, push, push / unit_s)
+    return RestToRest(distance, tuple(unit_s * begin for begin in begins_s), tuple(
+        (p * units[0], v * units[1], a * units[2], j * units[3]) for p, v, a, j in states))
 
 
 def between_states(position: float, start: tuple[float, float], end: tuple[float, float], lowest_velocity: float,
                    limits: tuple[float, float, float], least_s: float) -> RestToRest:
     """The fastest way back to the same `position`, from velocity and acceleration `start` to those at the `end`, that
-    takes `least_s` at least. Both ends must be within the limits, and stay so when braked from or led up to."""
+    takes `least_s` at least. Errors: NoSuchMove, as where an end is not within the limits, or cannot be braked from, or
+    led up to, without leaving them."""
     velocity, acceleration, jerk = limits
+    if math.isclose(start[0], -end[0], rel_tol=_MIRRORED) and math.isclose(start[1], end[1], rel_tol=_MIRRORED):
+        raise NoSuchMove("ends that mirror each other crash Ruckig")  # a segmentation fault of 0.19
     request = ruckig.InputParameter(1)
     request.current_position, request.target_position = [position], [position]
     request.current_velocity, request.target_velocity = [start[0]], [end[0]]
@@ -103,13 +124,27 @@ def between_states(position: float, start: tuple[float, float], end: tuple[float
     request.min_velocity, request.max_velocity = [lowest_velocity], [velocity]
     request.max_acceleration, request.max_jerk = [acceleration], [jerk]
     request.minimum_duration = least_s
+    return RestToRest(position, *_calculated(request))
+
+
+_States = tuple[tuple[float, float, float, float], ...]
+
+
+def _calculated(request: ruckig.InputParameter) -> tuple[tuple[float, ...], _States]:
+    """When each piece of the move begins and the last one ends, and position, velocity, acceleration and jerk then.
+    Errors: NoSuchMove."""
     trajectory = ruckig.Trajectory(1)
-    ruckig.Ruckig(1).calculate(request, trajectory)
-    return RestToRest(position, *_pieces(trajectory))
-
-
-def _pieces(trajectory: ruckig.Trajectory
-            ) -> tuple[tuple[float, ...], tuple[tuple[float, float, float, float], ...]]:
+    try:
+        result = ruckig.Ruckig(1).calculate(request, trajectory)
+    except (ruckig.RuckigError, ValueError, RuntimeError) as error:  # limits that contradict the ends
+        raise NoSuchMove(str(error)) from error
+    if result not in (ruckig.Result.Working, ruckig.Result.Finished):
+        raise NoSuchMove(f"{result}")
     profile = trajectory.profiles[0][0]
+    if profile.brake.duration > 0.0:  # it first leaves the limits that it began beyond
+        raise NoSuchMove("the start cannot be braked from within the limits")
     begins_s = (0.0, *accumulate(profile.t))
-    return begins_s, tuple(zip(profile.p, profile.v, profile.a, (*profile.j, 0.0), strict=True))
+    states = tuple(zip(profile.p, profile.v, profile.a, (*profile.j, 0.0), strict=True))
+    if not all(map(math.isfinite, chain(begins_s, *states))):
+        raise NoSuchMove("numbers beyond what a computer holds")
+    return begins_s, states

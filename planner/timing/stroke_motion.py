@@ -10,6 +10,7 @@ from planner.arrays import FloatArray, IntArray
 from planner.inverse_kinematics.joint_path import DEGREE, JointPaths
 from planner.ragged import starts_of, within
 from planner.spline import evaluate, first_controls
+from planner.timing.length_bound import SLOW_ARM, require_bounded
 from planner.timing.limits import Limits
 
 _CHECKS_PER_CELL = 20
@@ -40,19 +41,25 @@ class StrokeMotions:
 
     def samples(self) -> list[FloatArray]:
         """(n_periods + 1, n_joints) positions of each stroke at its samples, both ends included."""
+        return np.split(self.paths.at(*self.places()), np.cumsum(self.n_periods + 1)[:-1])
+
+    def places(self, per_period: int = 1) -> tuple[IntArray, FloatArray]:
+        """Cells, and fractions of them, (n,) in which all strokes are at so many equal steps a period, both ends of
+        each included."""
         starts = starts_of(self.paths.n_cells)
-        counts = self.n_periods + 1
+        n_steps = per_period * self.n_periods
+        counts = n_steps + 1
         after = np.cumsum(self.cell_s)  # on one axis of time, stroke after stroke
         begins = after - self.cell_s
         begins_s, ends_s = begins[starts[:-1]], after[starts[1:] - 1]
         number = within(counts)
-        times = np.repeat(begins_s, counts) + number * np.repeat((ends_s - begins_s) / self.n_periods, counts)
+        times = np.repeat(begins_s, counts) + number * np.repeat((ends_s - begins_s) / n_steps, counts)
         cell = np.clip(np.searchsorted(begins, times, side="right") - 1,
                        np.repeat(starts[:-1], counts), np.repeat(starts[1:] - 1, counts))
         fraction = _fraction_after(self.rates[cell], times - begins[cell], self.cell_s[cell])
         fraction[number == 0] = 0.0
-        fraction[number == np.repeat(self.n_periods, counts)] = 1.0
-        return np.split(self.paths.at(cell, fraction), np.cumsum(counts)[:-1])
+        fraction[number == np.repeat(n_steps, counts)] = 1.0
+        return cell, fraction
 
     def sample(self, path: int) -> FloatArray:
         """(n_periods + 1, n_joints) the samples of one stroke."""
@@ -62,12 +69,13 @@ class StrokeMotions:
 def motions(paths: JointPaths, rates: FloatArray, limits: Limits, rate_hz: float) -> StrokeMotions:
     """Lay timed paths on the sample grid: each is slowed by the little that makes it last whole periods, and by
     what any limit is exceeded between the cell ends (slowing by k divides velocity by k, acceleration by
-    k^2 and jerk by k^3)."""
+    k^2 and jerk by k^3). Errors: UsageError where that takes too long to be a plan."""
     n_cells = paths.n_cells
     slower = np.maximum.reduceat(_slowing_needed(paths, rates, limits), starts_of(n_cells)[:-1])
     slower = np.maximum(slower, 1.0)
     cell_s = _until(rates, np.ones(len(rates)))
     durations = np.add.reduceat(cell_s, starts_of(n_cells)[:-1])
+    require_bounded(float((durations * slower).sum()), rate_hz, "the drawing", SLOW_ARM)
     n_periods = np.maximum(np.ceil(durations * slower * rate_hz - 1e-9).astype(np.int64), 1)
     slower = np.repeat(n_periods / rate_hz / durations, n_cells)
     return StrokeMotions(paths, rate_hz, rates / slower[:, None] ** 2, cell_s * slower, n_periods)

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
 
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.arm_file import DEFAULT_ARM, arms_folder, known_arms, load_arm, read_arm_file
@@ -156,8 +160,14 @@ FAULTS = {
     "no number": (("a_mm = 25.0", "a_mm = nan"), ("joints[2].a_mm:", "(value: nan)")),
     "zero speed": (("max_velocity_mm_s = 100.0", "max_velocity_mm_s = 0"), ("joints[1].max_velocity_mm_s:", "0")),
     "negative radius": (("inner_radius_mm = 20.0", "inner_radius_mm = -1.0"), ("workspace.inner_radius_mm:", "-1.0")),
-    "unknown kind": (('kind = "prismatic"', 'kind = "sliding"'), ("joints[1]", "'sliding'")),
-    "no kind": (('kind = "prismatic"', ""), ("joints[1]", "kind")),
+    "unknown kind": (('kind = "prismatic"', 'kind = "continuous"'),
+                     ("joints[1].kind: has to be one of 'revolute', 'prismatic' (value: 'continuous'), joint reach",)),
+    "no kind": (('kind = "prismatic"', ""), ("joints[1].kind: missing, joint reach",)),
+    "a link too long": (("a_mm = 25.0", "a_mm = 1e9"), ("joints[2].a_mm: has to be 10000 or less", "joint wrist")),
+    "links too long together": (("a_mm = 25.0", "a_mm = 9990.0"), ("10110 mm together, more than 10000 mm",)),
+    "a jerk of nothing": (("max_jerk_mm_s3 = 20000.0", "max_jerk_mm_s3 = 1e-320"),
+                          ("joints[1].max_jerk_mm_s3: has to be 0.001 or more",)),
+    "a long name": (('name = "wrist"\nkind', f'name = "{"w" * 300}"\nkind'), ("64 characters or fewer",)),
     "unknown hold": (('hold = "coupling"', 'hold = "glue"'), ("pen.hold:", "(value: 'glue')")),
     "name with a comma": (('name = "waist"', 'name = "waist,1"'), ("joints[0].name:", "(value: 'waist,1')")),
     "limits swapped": (("min_mm = 10.0", "min_mm = 90.0"), ("joints[1]", "lower limit 90", "upper limit 80")),
@@ -276,6 +286,43 @@ def test_missing_file_and_folder_are_refused(tmp_path: Path) -> None:
     for name in ("none.toml", "folder.toml"):
         with pytest.raises(ArmFileError, match="cannot be read"):
             load_arm(str(tmp_path / name))
+
+
+@pytest.mark.parametrize("name", ["arm.urdf", "arm.urdf.xacro", "ARM.URDF"])
+def test_robot_descriptions_are_refused_with_what_to_do(name: str) -> None:
+    with pytest.raises(ArmFileError, match=r"not read yet; write the joints as rows"):
+        load_arm(name)
+
+
+def test_files_that_are_no_files_are_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.toml")
+    (tmp_path / "loop.toml").symlink_to(tmp_path / "loop.toml")
+    (tmp_path / "large.toml").write_bytes(b"#" * 1_000_001)
+    for name, said in (("pipe", "is not a regular file"), ("loop", "cannot be read"), ("large", "more than 1000000"),
+                       ("x" * 300, "cannot be read")):
+        with pytest.raises(ArmFileError, match=said):
+            load_arm(str(tmp_path / f"{name}.toml"))
+
+
+_VALUES = st.sampled_from(["nan", "-inf", "0", "1e-320", "1e9", "1" + "0" * 400, "-5", '"text"', "true", "[]", "{}",
+                           "[[]]", "2026-01-01", '"continuous"', '"q1"', "[0.0, 0.0, 1.0]"])
+
+
+@given(st.sampled_from(ARM.splitlines()), _VALUES)
+def test_any_value_is_taken_or_refused_in_plain_words(line: str, value: str) -> None:
+    assume(" = " in line)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "arm.toml"
+        file.write_text(ARM.replace(line, f"{line.split(' = ')[0]} = {value}", 1), encoding="utf-8")
+        try:
+            read_arm_file(file)
+        except ArmFileError as error:
+            said = str(error)
+        else:
+            return
+    assert said.startswith(str(file))
+    for word in ("Input", "valid", "pydantic", "tag", "Traceback", "instance"):
+        assert word not in said.replace(str(file), "").replace("Invalid", "")
 
 
 @pytest.mark.parametrize("name", known_arms())

@@ -19,7 +19,7 @@ from planner.settings import CanvasKind
 from tests.arms.chains import load_once, tips_by_product, variant
 
 R_MAX_MM, R_MIN_MM = 150.0, 33.0
-RADII = st.tuples(st.floats(20, 100), st.floats(1.5, 6)).map(lambda pair: (pair[0] * pair[1], pair[0]))
+RADII = st.tuples(st.floats(20, 100), st.floats(2.01, 6)).map(lambda pair: (pair[0] * pair[1], pair[0]))
 
 
 def area_mm2(canvas: Canvas) -> float:
@@ -64,7 +64,7 @@ def test_both_lie_in_the_half_ring_and_none_of_the_kind_is_larger_than_the_optim
 
 def test_a_ring_too_narrow_has_no_documented_canvas() -> None:
     with pytest.raises(PlanError, match="outer radius"):
-        documented_canvas(1.41 * R_MIN_MM, R_MIN_MM)
+        documented_canvas(1.9 * R_MIN_MM, R_MIN_MM)
 
 
 def test_canvas_point_of_the_worked_example() -> None:

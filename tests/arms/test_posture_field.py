@@ -14,7 +14,7 @@ from planner.arms.arm import Arm, Coupling, JointKind
 from planner.arms.arm_file import arms_folder, load_arm
 from planner.arms.kinematics import kinematics_of
 from planner.arms.posture_field import posture_field, within_limits
-from planner.arms.posture_samples import slowest_direction_mm_s
+from planner.arms.posture_tests import slowest_direction_mm_s
 from planner.arms.projection import project
 from planner.arms.quickest_lift import quickest_lifts
 from planner.arrays import FloatArray
@@ -124,7 +124,7 @@ def test_an_arm_that_cannot_have_a_field_is_told_why() -> None:
     with pytest.raises(PlanError, match="coupling"):
         posture_field(leaning)
     raised = replace(arm, joints=(replace(arm.joints[0], d_mm=300.0), *arm.joints[1:]))
-    with pytest.raises(PlanError, match="no posture within the joint limits"):
+    with pytest.raises(PlanError, match="none gets there, joint limits aside; check d_mm"):
         posture_field(raised)
 
 

@@ -93,7 +93,8 @@ def resting(arm: Arm, degrees: list[float], down: slice = slice(0)) -> Trajector
 
 
 def found(trajectory: Trajectory, arm: Arm) -> set[str]:
-    return {finding.check for finding in check_trajectory(trajectory, arm).faults}
+    """The faults, but for the one that they all have: an arm that never moves does not lift the pen."""
+    return {finding.check for finding in check_trajectory(trajectory, arm).faults} - {"pen as the tip"}
 
 
 def test_a_coupling_off_by_a_little_is_found() -> None:

@@ -239,7 +239,7 @@ BILLION = "".join(f'<g id="g{i}">' + f'<use href="#g{i - 1}"/>' * 10 + "</g>" fo
 @pytest.mark.parametrize(("data", "words"), [
     (b"", "empty"),
     (b" \n", "empty"),
-    (b"%PDF-1.4 nonsense", "not well-formed XML"),
+    (b"%PDF-1.4 nonsense", "this is a PDF, not an SVG"),
     (b"\x00\x01\x02\xff", "not well-formed XML"),
     (b'<?xml version="1.0" encoding="no-such"?><svg/>', "XML"),
     (f"{ROOT}<path d='M1 1".encode(), "not well-formed XML"),

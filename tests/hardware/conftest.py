@@ -56,14 +56,3 @@ def sketch(arm: Arm, arc: ArcMaker) -> Trajectory:
         arm="drawing_arm", drawing="arcs.svg", method="path", rate_hz=rate_hz, columns=arm.column_names,
         positions=arm.to_file_units(np.concatenate(parts)), pen=labels >= 0, stroke=labels,
         svg_to_arm_mm=(1, 0, 0, 1, 0, 0))
-
-
-_REAL_TIME = ("native/test_run.py", "native/test_real_time.py", "streaming/")
-"""Where host and controller meet in real time: a shared machine may keep either from its core for longer than a line
-waits, and that is none of their faults. What fails is tried twice more."""
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    for item in items:
-        if any(part in item.path.as_posix() for part in _REAL_TIME):
-            item.add_marker(pytest.mark.flaky(reruns=2))

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import errno
 import json
+import os
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +16,8 @@ from hypothesis import strategies as st
 from hardware.clock import InstantClock
 from hardware.course import next_to_draw
 from hardware.driver import Tally
-from hardware.journal import NOTED_EVERY_S, Entry, Journal, digest, journal_path, read_journal
+from hardware.journal import NOTED_EVERY_S, Journal, digest, journal_path
+from hardware.journal_entry import Entry, read_journal
 from planner.errors import OutputError, TrajectoryFileError
 
 BEGINNING = Entry("0f" * 32, "drawing_arm", "native", 3, "")
@@ -71,13 +73,6 @@ def test_what_is_no_journal_is_refused(tmp_path: Path, content: bytes) -> None:
     path.write_bytes(content)
     with pytest.raises(TrajectoryFileError, match="is not a journal"):
         read_journal(path)
-
-
-def test_a_journal_of_version_1_is_read(tmp_path: Path) -> None:
-    path = tmp_path / "traj.csv.journal"
-    path.write_text('{"journal": 1, "sha256": "0f", "arm": "scara", "driver": "native", "next_stroke": 0}\n'
-                    '{"next_stroke": 1}\n{"next_stroke": 2}\n{"ended": "the line is dead"}\n')
-    assert read_journal(path) == Entry("0f", "scara", "native", 2, "the line is dead")
 
 
 def _read(path: Path) -> Entry:
@@ -189,3 +184,159 @@ def test_a_changed_file_has_another_digest(tmp_path: Path) -> None:
 def test_a_folder_that_takes_no_journal_is_said_at_once(tmp_path: Path) -> None:
     with pytest.raises(OutputError, match="there is no folder"):
         Journal(tmp_path / "none" / "traj.csv.journal", BEGINNING, InstantClock())
+
+
+GOLDEN_1 = b"""\
+{"journal": 1, "sha256": "aa", "arm": "drawing_arm", "driver": "maestro", "next_stroke": 0}
+{"sent_stroke": 0}
+{"next_stroke": 1}
+{"next_str{"sent_stroke": 1}
+{"next_stroke": 2}
+{"ended": "complete"}
+{"journal": 1, "sha256": "0f", "arm": "drawing_arm", "driver": "maestro", "next_stroke": 2, "port": "/dev/ttyACM0"}
+{"sent_stroke": 4}
+{"next_stroke": 4}
+\0\0\0\0{"next_stroke": 9}
+{"sent_stroke": 6}
+"""
+"""Two runs, one behind the other, each with a torn line; nobody was left to say how the second ended."""
+
+
+GOLDEN_2 = b"""\
+{"journal": 2, "sha256": "0f", "arm": "scara", "driver": "native", "next_stroke": 2, "sample": 30, "port": "/dev/tty9"}
+{"reached": 6, "sent": 9, "course_until": null, "at": 31.8}                                  \n\
+{"tally": {"run": 77, "first": 5, "each": 2}}
+{"course": [[1, 30.0], [2, 30.0], [3, 30.2], [7, 34.0]]}
+{"course": [[5, 31.5], [6, 31.8], [7, 31.8]]}
+{"next_stroke": 3}
+{"ended": "the line is dead"}
+"""
+"""A run that its controller counts: it braked after four of seven set points."""
+
+
+def test_a_journal_of_set_points_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "traj.csv.journal"
+    path.write_bytes(GOLDEN_2)
+    entry = _read(path)
+    assert entry == Entry("0f", "scara", "native", 3, "the line is dead", -1, 30, Tally(77, 5, 2), (
+        ((1, 30.0), (2, 30.0), (3, 30.2), (7, 34.0)), ((5, 31.5), (6, 31.8), (7, 31.8))), 6, 9, None, 31.8)
+    assert [entry.come_to(reached) for reached in (0, 3, 5, 9)] == [30, 30.2, 31.5, 31.8]
+    path.write_bytes(GOLDEN_2 + GOLDEN_1.replace(b"drawing_arm", b"arm"))
+    assert read_journal(path) == Entry("0f", "arm", "maestro", 4, "", 6)  # of another run, and all of the first is over
+
+
+def test_whole_lines_hold_torn_ones_do_not_and_a_later_run_begins_anew(tmp_path: Path) -> None:
+    path = tmp_path / "traj.csv.journal"
+    path.write_bytes(GOLDEN_1)
+    assert read_journal(path) == Entry("0f", "drawing_arm", "maestro", 4, "", 6)
+    path.write_bytes(GOLDEN_1[:GOLDEN_1.index(b'{"journal": 1, "sha256": "0f"')])
+    first = read_journal(path)
+    assert first == Entry("aa", "drawing_arm", "maestro", 2, "complete", 0)
+
+
+def test_what_was_sent_and_not_confirmed_is_in_doubt(tmp_path: Path) -> None:
+    path = tmp_path / "traj.csv.journal"
+    journal = Journal(path, BEGINNING, InstantClock(), "/dev/ttyACM0")
+    for stroke in (3, 4, 5):
+        journal.sent(stroke)
+    journal.finished(3)
+    assert list(journal.in_doubt) == [4, 5]
+    journal.close("the line is dead")
+    entry = read_journal(path)
+    assert entry is not None
+    assert list(entry.in_doubt) == [4, 5]
+    first = json.loads(path.read_text().splitlines()[0])
+    assert (first["port"], first["process"]) == ("/dev/ttyACM0", os.getpid())
+
+
+def test_a_line_that_a_full_disk_tore_makes_room_for_the_next(tmp_path: Path) -> None:
+    path = tmp_path / "traj.csv.journal"
+    journal = Journal(path, BEGINNING, InstantClock())
+    whole = journal._file
+
+    class Tearing:
+        """Takes half of the next line, no more of it, and all of those after it."""
+
+        def __init__(self) -> None:
+            self.writes = 0
+
+        def write(self, line: bytes) -> int:
+            self.writes += 1
+            if self.writes == 2:
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return int(whole.write(line[:len(line) // 2] if self.writes == 1 else line) or 0)
+
+        def __getattr__(self, name: str) -> Any:
+            return getattr(whole, name)
+
+    journal._file = Tearing()  # type: ignore[assignment]
+    journal.finished(3)
+    journal.finished(4)
+    with pytest.raises(OutputError, match="No space left"):
+        journal.close("stopped")
+    assert read_journal(path) == replace(BEGINNING, next_stroke=5, ended="stopped")
+
+
+@pytest.mark.parametrize("content", [
+    b"[" * 100_000, b'{"journal": ' + b"[" * 100_000, b'{"journal": 1, "next_stroke": ' + b"9" * 5000 + b"}",
+    b'{"journal": 1, "sha256": "", "arm": "a", "driver": "d", "next_stroke": true}\n',
+    b'{"journal": 1, "sha256": "", "arm": "a", "driver": "d", "next_stroke": -1}\n',
+    b'{"journal": 1, "sha256": "", "arm": "a", "driver": "d", "next_stroke": 1.5}\n',
+    b'[["journal", 1], ["sha256", ""], ["arm", "a"], ["driver", "d"], ["next_stroke", 1]]\n'])
+def test_what_is_hostile_is_no_journal(tmp_path: Path, content: bytes) -> None:
+    path = tmp_path / "traj.csv.journal"
+    path.write_bytes(content)
+    with pytest.raises(TrajectoryFileError, match="is not a journal"):
+        read_journal(path)
+
+
+def test_what_is_no_file_or_has_no_end_is_no_journal(tmp_path: Path) -> None:
+    pipe, huge, folder = tmp_path / "pipe", tmp_path / "huge", tmp_path / "folder"
+    os.mkfifo(pipe)
+    with pytest.raises(TrajectoryFileError, match="is no file"):
+        read_journal(pipe)
+    with pytest.raises(OutputError, match="is no file"):
+        Journal(pipe, BEGINNING, InstantClock())
+    huge.touch()
+    os.truncate(huge, 1 << 34)
+    with pytest.raises(TrajectoryFileError, match="is too long"):
+        read_journal(huge)
+    folder.mkdir()
+    with pytest.raises(TrajectoryFileError, match="cannot be read: Is a directory"):
+        read_journal(folder)
+    with pytest.raises(TrajectoryFileError, match="cannot be read: File name too long"):
+        read_journal(tmp_path / ("x" * 300))
+
+
+def test_how_a_run_ended_is_fit_for_a_terminal(tmp_path: Path) -> None:
+    path = tmp_path / "traj.csv.journal"
+    _written(path, [3], "\x1b[2J\nnew\x00" + "x" * 5000)
+    entry = read_journal(path)
+    assert entry is not None
+    assert entry.ended.isprintable()
+    assert len(entry.ended) == 1000
+
+
+def test_five_hundred_mutants_are_a_journal_or_none(tmp_path: Path) -> None:
+    path, rng = tmp_path / "traj.csv.journal", np.random.default_rng(3)
+    _written(path, [3, 4, 5, 6], "stopped")
+    whole = path.read_bytes()
+    for _ in range(500):
+        content = bytearray(whole)
+        for at in rng.integers(0, len(content) - 8, rng.integers(1, 9)):
+            match rng.integers(0, 4):
+                case 0:
+                    content[at] = rng.integers(0, 256)
+                case 1:
+                    del content[at:at + rng.integers(1, 8)]
+                case 2:
+                    content[at:at] = bytes(rng.choice(list(b'{}[]",:0123456789\n\\ue'), rng.integers(1, 8)).tolist())
+                case 3:
+                    content[at:at] = content[:rng.integers(0, len(content))]
+        path.write_bytes(content)
+        try:
+            entry = read_journal(path)
+        except TrajectoryFileError:
+            continue
+        assert entry is not None
+        assert entry.next_stroke >= 0

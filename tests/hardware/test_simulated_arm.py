@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -97,3 +99,37 @@ def test_real_servos_ignore_what_is_within_their_dead_band_and_play(arm: Arm) ->
 def test_real_servos_have_to_be_described() -> None:
     with pytest.raises(ArmFileError, match="does not say how joint q1 is moved"):
         SimulatedArm(load_arm("scara"), InstantClock(), Servos.REAL)
+
+
+def test_servos_on_a_bus_have_dead_band_and_play_too() -> None:
+    so101 = load_arm("so101")
+    rest = so101.from_file_units([0.0, -20.0, 30.0, 40.0, 0.0])
+    joint = so101.joints[0]
+    assert joint.bus is not None
+    arm = replace(so101, joints=(replace(joint, bus=replace(joint.bus, dead_band_counts=8.0)), *so101.joints[1:]))
+    clock = InstantClock()
+    simulated = SimulatedArm(arm, clock, Servos.REAL)
+    simulated.connect(rest)
+    places = []
+    for angle in (0.9, 3.0, 2.6):
+        simulated.send(rest + np.radians([angle, 0.0, 0.0, 0.0, 0.0]), 0.01)
+        simulated.flush()
+        places.append(float(np.degrees(simulated.recording.positions[-1] - rest)[0]))
+    band_deg = 8.0 / 11.377778
+    assert places[0] == pytest.approx(0.0, abs=1e-3)  # within dead band and half the play of 0.5 degrees
+    assert places[1] == pytest.approx(3.0 - band_deg - 0.25, abs=0.05)  # to a whole count of 0.09 degrees
+    assert places[2] == places[1]
+
+
+def test_without_a_word_on_servos_joints_lag_and_arrive() -> None:
+    scara, clock = load_arm("scara"), InstantClock()
+    rest = (scara.minimum + scara.maximum) / 2
+    simulated = SimulatedArm(scara, clock, Servos.LAGGING)
+    simulated.connect(rest)
+    goal = rest + 0.01
+    simulated.send(goal, 0.01)
+    clock.sleep_until(0.01)
+    simulated.send(goal, 0.01)
+    assert 0.0 < float(simulated.recording.positions[-1][0] - rest[0]) < 0.01
+    simulated.flush()
+    np.testing.assert_allclose(simulated.recording.positions[-1], goal, atol=1e-5)

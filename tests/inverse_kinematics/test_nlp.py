@@ -5,13 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
-from planner.arms.arm import Arm
+from planner.arms.arm import Arm, PenHold
 from planner.arms.canvas import usable_canvas
 from planner.arms.kinematics import kinematics_of
 from planner.arms.projection import joint_scale, project
+from planner.comparison.compare import default_start
+from planner.comparison.targets import TargetKind, random_targets
 from planner.inverse_kinematics.nlp import nlp_solver, solve_sequence
 from tests.arms.chains import load_once, reachable_postures, tips_by_product
+from tests.arms.known_arms import KNOWN_ARMS
 
 
 def test_solutions_are_on_target_and_within_limits(arm: Arm) -> None:
@@ -107,3 +111,26 @@ def test_settling_comes_nearer_to_where_a_further_solution_stays_and_is_counted(
                         for each in found)
     assert settled < 0.5 * at_once
     assert found[0].iterations[0] > found[1].iterations[0] > 0
+
+
+@pytest.mark.parametrize("name", ["drawing_arm", "scara", "so101", "ur5e"])
+def test_every_random_target_in_reach_is_solved_from_the_start_with_the_pen_down(name: str) -> None:
+    arm = KNOWN_ARMS[name] if name in KNOWN_ARMS else load_once(name)
+    targets = random_targets(arm, 60, 0).tips_mm
+    kinematics = kinematics_of(arm)
+    start = kinematics.free_of(default_start(arm, TargetKind.RANDOM))
+    found = solve_sequence(arm, targets, start, settle=False)
+    assert found.converged.all()
+    joints = arm.complete(found.postures)
+    assert ((joints >= arm.minimum - 1e-6) & (joints <= arm.maximum + 1e-6)).all()
+    assert np.linalg.norm(tips_by_product(arm, joints) - targets, axis=1).max() < 2e-3
+    if arm.pen.hold is PenHold.TOOL_AXIS:
+        assert (kinematics.tool_axis(found.postures)[:, 2] < 0).all()
+
+
+def test_a_posture_that_only_the_very_limit_allows_is_found_last() -> None:
+    arm = load_once("three_joint")
+    posture = kinematics_of(arm).free_of(arm.maximum - 1e-3 * (arm.maximum - arm.minimum))
+    target = kinematics_of(arm).tip_mm(posture[None])[0]
+    _, good, _, miss_mm = nlp_solver(arm).solve(target, kinematics_of(arm).free_of((arm.minimum + arm.maximum) / 2))
+    assert good and miss_mm < 1e-3

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -37,7 +38,7 @@ def furthest_mm(points: FloatArray, lines: list[shapely.LineString]) -> float:
 @settings(deadline=None, max_examples=30)
 @given(strokes_made)
 def test_what_is_kept_is_the_part_within_reach(strokes: list[FloatArray]) -> None:
-    kept, lost_mm, lost_whole = clip_strokes(strokes, in_ring)
+    kept, lost_mm, lost_whole = clip_strokes(strokes, in_ring, OUTER_MM)
     lines = [shapely.LineString(stroke) for stroke in strokes if len(stroke) > 1]
     kept_lines = [shapely.LineString(stroke) for stroke in kept if len(stroke) > 1]
     before, after = points_of(lines), points_of(kept_lines)
@@ -58,12 +59,12 @@ def test_what_is_kept_is_the_part_within_reach(strokes: list[FloatArray]) -> Non
 
 def test_a_stroke_within_reach_is_left_as_it_is() -> None:
     stroke = np.array([[50.0, 0.0], [60.0, 10.0]])
-    kept, lost_mm, lost_whole = clip_strokes([stroke], in_ring)
+    kept, lost_mm, lost_whole = clip_strokes([stroke], in_ring, OUTER_MM)
     assert kept[0] is stroke and (lost_mm, lost_whole) == (0.0, 0)
 
 
 def test_a_stroke_across_the_hole_becomes_two() -> None:
-    kept, lost_mm, lost_whole = clip_strokes([np.array([[-60.0, 0.0], [60.0, 0.0]])], in_ring)
+    kept, lost_mm, lost_whole = clip_strokes([np.array([[-60.0, 0.0], [60.0, 0.0]])], in_ring, OUTER_MM)
     assert lost_whole == 0 and [len(run) > 1 for run in kept] == [True, True]
     np.testing.assert_allclose(np.abs([kept[0][[0, -1], 0], kept[1][::-1][[0, -1], 0]]),
                                [[60.0, 33.0]] * 2, atol=STEP_MM)
@@ -72,5 +73,20 @@ def test_a_stroke_across_the_hole_becomes_two() -> None:
 
 def test_taps_are_kept_or_lost_whole() -> None:
     near, far = np.array([[50.0, 0.0]]), np.array([[500.0, 0.0]])
-    kept, lost_mm, lost_whole = clip_strokes([near, far], in_ring)
+    kept, lost_mm, lost_whole = clip_strokes([near, far], in_ring, OUTER_MM)
     assert kept == [near] and (lost_mm, lost_whole) == (0.0, 1)
+
+
+@pytest.mark.parametrize("far_mm", [1e3, 1e6, 1e9])
+def test_a_line_from_miles_away_is_probed_near_the_arm_alone(far_mm: float) -> None:
+    line = np.array([[-far_mm, 50.0], [far_mm, 50.0 + 1e-3 * far_mm]])
+    probed = 0
+
+    def counting(points_mm: FloatArray) -> BoolArray:
+        nonlocal probed
+        probed += len(points_mm)
+        return in_ring(points_mm)
+
+    kept, _, _ = clip_strokes([line, line[::-1] + 1e8], counting, OUTER_MM)
+    assert probed < 4 * OUTER_MM / STEP_MM
+    assert bool(kept) is (far_mm < 1e6)  # else it passes by

@@ -10,7 +10,7 @@ from matplotlib.collections import PolyCollection
 
 from planner.arrays import FloatArray
 from planner.errors import UsageError
-from planner.plots.phases import Phase, phases_of, seconds_in
+from planner.phases import Phase, phases_of, seconds_in
 from planner.plots.timeline import plot_timeline
 from planner.trajectory import TRAVELLING, Trajectory
 
@@ -19,7 +19,7 @@ RATE_HZ = 50.0
 
 def hopping() -> tuple[Trajectory, FloatArray]:
     """Comes down, dwells, draws, lifts and travels, in steps of a millimetre where it moves."""
-    way = ([(0, 2 - k, Phase.LOWERING if k else Phase.TRAVELLING) for k in range(2)] + [(0, 0, Phase.DWELLING)] * 3
+    way = ([(0, 2 - k, Phase.LOWERING if k else Phase.TRAVELLING) for k in range(2)] + [(0, 0, Phase.RESTING)] * 3
            + [(k, 0, Phase.DRAWING) for k in range(5)] + [(5, 0, Phase.LIFTING)]
            + [(5 + k, 1 + k, Phase.TRAVELLING) for k in range(4)])
     tip_mm = np.array([(x, 0.0, z) for x, z, _ in way] + [(9, 0.0, 5)], dtype=np.float64)
@@ -32,7 +32,7 @@ def hopping() -> tuple[Trajectory, FloatArray]:
 def test_each_step_has_the_phase_that_it_is_made_of() -> None:
     trajectory, tip_mm = hopping()
     assert [Phase(phase).name for phase in phases_of(trajectory, tip_mm, 1.0)] == (
-        ["TRAVELLING", "LOWERING"] + ["DWELLING"] * 3 + ["DRAWING"] * 5 + ["LIFTING"] + ["TRAVELLING"] * 4)
+        ["TRAVELLING", "LOWERING"] + ["RESTING"] * 3 + ["DRAWING"] * 5 + ["LIFTING"] + ["TRAVELLING"] * 4)
 
 
 @given(st.integers(0, 2 ** 32 - 1), st.integers(1, 80), st.floats(0.1, 4))
@@ -71,7 +71,7 @@ def test_a_part_of_the_time_is_counted_alone() -> None:
     height, rows, totals = figure.axes
     assert sum(bar.get_width() for bar in totals.patches) == pytest.approx(0.08)
     assert height.get_xlim() == pytest.approx((0.04, 0.12))
-    (dwelling,) = [bar for bar in rows.collections if bar.get_label() == "dwelling"]
-    assert dwelling.get_paths()[0].get_extents().x0 == pytest.approx(0.04)
+    (resting,) = [bar for bar in rows.collections if bar.get_label() == "resting"]
+    assert resting.get_paths()[0].get_extents().x0 == pytest.approx(0.04)
     with pytest.raises(UsageError, match=r"the trajectory lasts 0\.3 s"):
         plot_timeline(trajectory, tip_mm, 1.0, from_s=0.5)

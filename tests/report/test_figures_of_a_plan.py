@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from planner.arms.arm_file import load_arm
 from planner.checking.check import check_trajectory
 from planner.report.shares import QUANTITIES, largest_shares
-from planner.report.strokes import stroke_figures
+from planner.stroke_figures import stroke_figures
 from planner.trajectory import TRAVELLING, Trajectory
 
 RATE_HZ = 50.0

@@ -37,7 +37,7 @@ def touches(arm: Arm, tips_mm: FloatArray) -> list[Touch]:
 
 
 def rules(rate_hz: float = 100.0, lift_mm: float = LIFT_MM, lowering_mm_s: float = 30.0) -> HopRules:
-    return HopRules(CLEARANCE_MM, lift_mm, lowering_mm_s, rate_hz)
+    return HopRules(CLEARANCE_MM, lift_mm, lowering_mm_s, rate_hz, 0.05)
 
 
 def hop(arm: Arm, leave: Touch | None, meet: Touch | None, how: HopRules) -> Hop:
@@ -216,3 +216,30 @@ def test_moves_from_rest_to_rest_keep_their_limits(
         middle = move.time_at(distance / 2)
         np.testing.assert_allclose(move.at(np.array([middle]))[0], distance / 2, rtol=1e-6)
         np.testing.assert_allclose(middle, move.duration_s / 2, rtol=1e-6)  # there and back are alike
+
+
+def _whole_s(arm: Arm, how: HopRules) -> float:
+    touched = touches(arm, PLACES[arm.name])
+    made = plan_hops(kinematics_of(arm), Limits.of(arm), how, touched[:-1], touched[1:])
+    return sum(len(one.joints) - 1 for one in made) / how.rate_hz
+
+
+@pytest.mark.parametrize("name", DRAWING_ARMS)
+def test_laxer_rules_make_no_slower_hops(name: str) -> None:
+    arm = load_once(name)
+    by_speed = [_whole_s(arm, rules(lowering_mm_s=speed)) for speed in (5.0, 10.0, 20.0, 30.0, 50.0, 80.0, 200.0)]
+    by_clearance = [_whole_s(arm, HopRules(clearance, LIFT_MM, 30.0, 100.0, 0.05))
+                    for clearance in (2.0, 1.0, 0.7, 0.5, 0.35, 0.25, 0.1)]
+    for times in (by_speed, by_clearance):
+        assert all(after <= before * 1.1 for before, after in pairwise(times)), times
+
+
+@pytest.mark.parametrize("name", DRAWING_ARMS)
+def test_the_choice_is_near_the_best_of_a_dense_search(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    arm = load_once(name)
+    chosen = _whole_s(arm, rules(1000.0))
+    for key, value in (("_N_RISES", 24), ("_N_FALLS", 12), ("_SHARES", np.linspace(0.1, 1.0, 31))):
+        monkeypatch.setattr(f"planner.timing.leap_choice.{key}", value)
+    for key, wide in (("_TRIED", 500), ("_WORTH", 1.0), ("_ABOUT", (0.9, 0.95, 1.0, 1.05, 1.1))):
+        monkeypatch.setattr(f"planner.timing.hops.{key}", wide)
+    assert chosen <= _whole_s(arm, rules(1000.0)) * 1.02

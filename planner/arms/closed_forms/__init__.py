@@ -44,7 +44,7 @@ FAMILIES: Mapping[str, Family] = {
 def family_of(arm: Arm) -> Family:
     """The closed form that the arm names. Errors: UsageError where it names none."""
     if arm.closed_form is None:
-        raise UsageError(f"arm {arm.name} names no closed form; use --method path, nlp or dls")
+        raise UsageError(f"arm {arm.name} names no closed form (key closed_form in its file); other methods need none")
     return FAMILIES[arm.closed_form]
 
 

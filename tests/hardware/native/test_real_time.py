@@ -18,6 +18,7 @@ from planner.arrays import FloatArray
 from planner.errors import HardwareError
 from tests.hardware.emulator.emulator import Emulator
 from tests.hardware.native.runs import PERIOD_S, against_plan, driver_on, waves
+from tests.hardware.real_time import in_real_time
 
 _RUN_S = 4.0
 _SURVIVED_S = 0.4
@@ -68,6 +69,7 @@ def _driver(device: Path, clock: WallClock) -> NativeDriver:
     return driver_on(Line(str(device)).open(native.BAUD), clock)
 
 
+@in_real_time("the emulated controller is kept from its core while its host sends")
 @pytest.mark.usefixtures("busy_cores")
 def test_busy_cores_starve_nothing(pty: tuple[Emulator, Path]) -> None:
     emulator, device = pty
@@ -83,11 +85,13 @@ def test_busy_cores_starve_nothing(pty: tuple[Emulator, Path]) -> None:
     assert driver.executed() == len(plan) - 1
     driver.close()
     time.sleep(0.2)
-    if longest_stall_s < _SURVIVED_S:
-        assert "under-runs: 0" in driver.statistics()
-        assert against_plan(emulator, plan, since_s).worst_us <= 0.5
+    if longest_stall_s >= _SURVIVED_S:
+        pytest.skip(f"the machine stood still for {longest_stall_s:.2f} s, which the queue is not made for")
+    assert "under-runs: 0" in driver.statistics()
+    assert against_plan(emulator, plan, since_s).worst_us <= 0.5
 
 
+@in_real_time("the emulated controller is kept from its core for longer than an answer is waited for")
 def test_a_cable_pulled_and_put_back(pty: tuple[Emulator, Path]) -> None:
     emulator, device = pty
     plan, driver = waves(3.0), _driver(device, WallClock())

@@ -24,6 +24,7 @@ from planner.drawing.svg import read_drawing
 from planner.trajectory import read_trajectory
 from tests.hardware.emulator.emulator import Emulator
 from tests.hardware.native.paper import ink
+from tests.hardware.real_time import in_real_time
 
 _ARM = load_arm("drawing_arm")
 _STROKES = 5
@@ -36,6 +37,10 @@ _MEETING_MM = 5.0
 """Of lines that meet and cross, and of where an interrupted one is gone on with."""
 _PLAYS_ON_S = 0.8
 """The controller has motion for less than this."""
+
+
+pytestmark = in_real_time("host and emulated controller share the cores, and either may be kept from them for "
+                          "longer than an answer is waited for")
 
 
 @pytest.fixture(scope="session")

@@ -15,8 +15,10 @@ from hardware.programme import make_programme
 from planner.arms.arm_file import load_arm
 from planner.cli import main
 from planner.trajectory import read_trajectory
-from tests.hardware.controllers.lines import Model, pty_line
+from tests.hardware.controllers.bench import Bench
+from tests.hardware.controllers.lines import Model
 from tests.hardware.controllers.maestro import MaestroModel
+from tests.hardware.streaming.on_bench import plan_run
 from tests.hardware.streaming.test_set_points import MAKERS, STEPS, told
 
 Planned = Callable[[str], Path]
@@ -38,9 +40,7 @@ def planned(tmp_path: Path) -> Planned:
 def test_what_arrives_is_the_programme_to_half_a_step(name: str, planned: Planned) -> None:
     arm = load_arm("so101" if name in ("feetech", "dynamixel") else "drawing_arm")
     csv, model = planned(arm.name), MAKERS[name]()
-    with pty_line(model) as far:
-        assert main(["run", str(csv), "--driver", name, "--port", far.name, "--quiet"]) == 0
-        far.finish()
+    assert plan_run(Bench(model), str(csv), "--driver", name, "--quiet") == 0
     trajectory, calibration = read_trajectory(csv), calibration_of(name, arm)
     assert calibration is not None
     programme = make_programme(arm, set_points(trajectory, arm, csv), trajectory.stroke, trajectory.rate_hz,
@@ -57,10 +57,10 @@ def _over_a_limit(lines: list[str]) -> list[str]:
 
 
 @pytest.mark.parametrize(("spoil", "options", "message"), [
-    (_over_a_limit, (), r"line \d+: joint q1 at 91 deg is outside its limits"),
+    (_over_a_limit, (), r"line \d+: .*: position of q1: 91 of 90 deg"),
     (lambda lines: lines[:-40], (), r"line \d+: "),
     (lambda lines: [*lines[:-1], lines[-1][:20]], (), r"line \d+: "),
-    (list, ("--arm", "drawing_arm_2022"), "the pen of arm 'drawing_arm_2022' would be|outside its"),
+    (list, ("--arm", "drawing_arm_2022"), "for arm 'drawing_arm_2022'|outside its"),
     (list, ("--arm", "six_joint"), "moves the joints|does not say how joint"),
     (list, ("--from-stroke", "3"), "there is no stroke 3; the drawing has 0 to 2"),
     (list, ("--resume",), "there is nothing to resume"),
@@ -71,10 +71,9 @@ def test_what_is_refused_sends_not_one_byte(
     csv = planned("drawing_arm")
     csv.write_text("\n".join(spoil(csv.read_text().splitlines())) + "\n")
     for driver in ("native", "maestro"):
-        with pty_line(MaestroModel()) as far:
-            assert main(["run", str(csv), "--driver", driver, "--port", far.name, *options]) == 2
-            far.finish()
-        assert far.received == b""
+        bench = Bench(MaestroModel())
+        assert plan_run(bench, str(csv), "--driver", driver, *options) == 2
+        assert bench.received == b""
         assert re.match(f"plan: error: .*({message})", capsys.readouterr().err)
     assert not csv.with_name("traj.csv.journal").exists()
 
@@ -84,10 +83,9 @@ def test_what_is_refused_sends_not_one_byte(
 def test_an_arm_that_does_not_say_how_it_is_moved_is_told_what_is_missing(
         arm: str, driver: str, key: str, planned: Planned, capsys: pytest.CaptureFixture[str]) -> None:
     csv = planned(arm)
-    with pty_line(MaestroModel()) as far:
-        assert main(["run", str(csv), "--driver", driver, "--port", far.name]) == 2
-        far.finish()
-    assert far.received == b""
+    bench = Bench(MaestroModel())
+    assert plan_run(bench, str(csv), "--driver", driver) == 2
+    assert bench.received == b""
     assert f"add to that joint in the arm file: {key} = {{" in capsys.readouterr().err
 
 
@@ -95,10 +93,9 @@ def test_an_arm_that_does_not_say_how_it_is_moved_is_told_what_is_missing(
 def test_a_damaged_journal_is_no_journal(damage: bytes, planned: Planned, capsys: pytest.CaptureFixture[str]) -> None:
     csv = planned("drawing_arm")
     csv.with_name("traj.csv.journal").write_bytes(damage)
-    with pty_line(MaestroModel()) as far:
-        assert main(["run", str(csv), "--driver", "maestro", "--port", far.name, "--resume"]) == 2
-        far.finish()
-    assert far.received == b""
+    bench = Bench(MaestroModel())
+    assert plan_run(bench, str(csv), "--driver", "maestro", "--resume") == 2
+    assert bench.received == b""
     assert "is not a journal of this program" in capsys.readouterr().err
 
 
@@ -119,8 +116,7 @@ class _Silent:
 def test_what_is_no_controller_is_exit_4_in_one_sentence(
         name: str, stranger: Callable[[], Model], planned: Planned, capsys: pytest.CaptureFixture[str]) -> None:
     csv = planned("so101" if name in ("feetech", "dynamixel") else "drawing_arm")
-    with pty_line(stranger()) as far:
-        assert main(["run", str(csv), "--driver", name, "--port", far.name]) == 4
+    assert plan_run(Bench(stranger()), str(csv), "--driver", name) == 4
     told_so = capsys.readouterr().err
     assert "plan: error: " in told_so
     assert "defect" not in told_so

@@ -15,6 +15,7 @@ from hardware.port import Line
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError
+from tests.hardware.controllers.bench import Bench
 from tests.hardware.controllers.bus import DynamixelModel, FeetechModel
 from tests.hardware.controllers.lines import Model, pty_line
 from tests.hardware.controllers.maestro import MaestroModel
@@ -39,6 +40,18 @@ def told(model: Model, n: int) -> FloatArray:
     raise AssertionError
 
 
+def heard(model: Model) -> int:
+    """How many whole set points a model of five joints has carried out, those of attaching among them."""
+    match model:
+        case MaestroModel():
+            return len(model.targets) // 5
+        case Ssc32Model():
+            return len(model.moves)
+        case FeetechModel() | DynamixelModel():
+            return len(model.goals)
+    raise AssertionError
+
+
 @pytest.mark.parametrize("name", MAKERS)
 def test_set_points_arrive_in_order_and_right_to_half_a_step(name: str) -> None:
     on_bus = name in ("feetech", "dynamixel")
@@ -46,14 +59,13 @@ def test_set_points_arrive_in_order_and_right_to_half_a_step(name: str) -> None:
     calibration: Calibration = count_calibration(arm) if on_bus else pulse_calibration(arm)
     positions = np.random.default_rng(5).uniform(arm.minimum, arm.maximum, (200, arm.n_joints))
     model = MAKERS[name]()
-    with pty_line(model) as far:
-        driver = make_driver(name, arm, Line(far.name), InstantClock())
-        driver.connect(positions[0])
-        for sample in positions:
-            driver.send(sample, 0.02)
-        driver.flush()
-        driver.close()
-        far.finish()
+    far = Bench(model)
+    driver = make_driver(name, arm, far, far)
+    driver.connect(positions[0])
+    for sample in positions:
+        driver.send(sample, 0.02)
+    driver.flush()
+    driver.close()
     assert np.abs(told(model, len(positions)) - calibration.to_servos(positions)).max() <= STEPS[name] / 2 + 1e-9
     numbers = [int(number) for number in re.findall(r"\d+", driver.statistics()[0])]
     assert numbers[0] == driver.executed() == 200

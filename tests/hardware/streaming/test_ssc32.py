@@ -10,6 +10,7 @@ from hardware.drivers import make_driver
 from hardware.port import Line
 from planner.arms.arm_file import load_arm
 from planner.errors import HardwareError
+from tests.hardware.controllers.bench import Bench
 from tests.hardware.controllers.lines import pty_line, tcp_line
 from tests.hardware.controllers.ssc32 import Ssc32Model
 
@@ -45,38 +46,37 @@ def test_servos_are_attached_one_by_one_then_move_together_in_the_time_of_a_samp
 
 def test_emergency_stop_stops_every_servo() -> None:
     model = Ssc32Model()
-    with pty_line(model) as far:
-        driver = make_driver("ssc32", ARM, Line(far.name), InstantClock())
-        driver.emergency_stop()
-        driver.connect(POSE)
-        driver.emergency_stop()
-        driver.close()
-        far.finish()
+    far = Bench(model)
+    driver = make_driver("ssc32", ARM, far, far)
+    driver.emergency_stop()
+    driver.connect(POSE)
+    driver.emergency_stop()
+    driver.close()
     assert model.stopped == list(PULSES_US)
 
 
 def test_a_board_that_does_not_answer_or_does_not_arrive_is_told() -> None:
     model = Ssc32Model(still_moving=1000)
-    with pty_line(model) as far:
-        driver = make_driver("ssc32", ARM, Line(far.name), InstantClock())
-        with pytest.raises(HardwareError, match="does not come to the end of its first move"):
-            driver.connect(POSE)
-        model.deaf = True
-        driver.close()
-        with pytest.raises(HardwareError, match=f"{far.name}: no SSC-32 answers"):
-            driver.connect(POSE)
-        driver.close()
+    far = Bench(model)
+    driver = make_driver("ssc32", ARM, far, far)
+    with pytest.raises(HardwareError, match="does not come to the end of its first move"):
+        driver.connect(POSE)
+    model.deaf = True
+    driver.close()
+    with pytest.raises(HardwareError, match="bench: no SSC-32 answers"):
+        driver.connect(POSE)
+    driver.close()
 
 
 def test_a_board_that_goes_is_missed() -> None:
     model = Ssc32Model()
-    with pty_line(model) as far:
-        driver = make_driver("ssc32", ARM, Line(far.name), InstantClock())
-        driver.connect(POSE)
-        for _ in range(60):
-            driver.send(POSE, 0.02)
-            driver.flush()
-        model.deaf = True
-        with pytest.raises(HardwareError, match="no longer answers"):
-            _stream(driver)
-        driver.close()
+    far = Bench(model)
+    driver = make_driver("ssc32", ARM, far, far)
+    driver.connect(POSE)
+    for _ in range(60):
+        driver.send(POSE, 0.02)
+        driver.flush()
+    model.deaf = True
+    with pytest.raises(HardwareError, match="no longer answers"):
+        _stream(driver)
+    driver.close()

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import FloatArray, IntArray
+from planner.phases import REST_MM_S
 from planner.trajectory import Trajectory
 
 
@@ -15,21 +16,23 @@ class StrokeFigures:
     """One entry a stroke, in drawing order.
 
     index: the stroke's number. begins_s: when it begins. duration_s: time on the paper, rest before drawing
-    included. length_mm: of the line between the samples; 0 of a tap. top_speed_mm_s: fastest step between two
+    included. drawing_s: the same without rest.
+    length_mm: of the line between the samples; 0 of a tap. top_speed_mm_s: fastest step between two
     samples.
     """
 
     index: IntArray
     begins_s: FloatArray
     duration_s: FloatArray
+    drawing_s: FloatArray
     length_mm: FloatArray
     top_speed_mm_s: FloatArray
 
     @property
     def mean_speed_mm_s(self) -> FloatArray:
-        """Length by time; 0 of a tap."""
-        mean: FloatArray = np.divide(self.length_mm, self.duration_s, out=np.zeros_like(self.length_mm),
-                                     where=self.duration_s > 0)
+        """Length by the time in which the pen moves, as for the whole drawing; 0 of a tap."""
+        mean: FloatArray = np.divide(self.length_mm, self.drawing_s, out=np.zeros_like(self.length_mm),
+                                     where=self.drawing_s > 0)
         return mean
 
     def lost_s(self, speed_mm_s: float) -> FloatArray:
@@ -47,5 +50,8 @@ def stroke_figures(trajectory: Trajectory, tip_mm: FloatArray) -> StrokeFigures:
     steps[1:][within] = np.linalg.norm(np.diff(tip_mm[drawn, :2], axis=0)[within], axis=1)
     length, top = ((np.add.reduceat(steps, first), np.maximum.reduceat(steps, first)) if len(drawn)
                    else (np.zeros(0), np.zeros(0)))
-    return StrokeFigures(index, drawn[first] / trajectory.rate_hz, (n_samples - 1) / trajectory.rate_hz, length,
+    moves = steps * trajectory.rate_hz >= REST_MM_S
+    moving = np.add.reduceat(moves.astype(np.int64), first) if len(drawn) else np.zeros(0)
+    return StrokeFigures(index, drawn[first] / trajectory.rate_hz, (n_samples - 1) / trajectory.rate_hz,
+                         moving / trajectory.rate_hz, length,
                          top * trajectory.rate_hz)

@@ -1,0 +1,119 @@
+"""`plan run`: the programme is played, watched by people and noted in a journal."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from hardware.clock import Clock, InstantClock, WallClock
+from hardware.driver import Driver
+from hardware.drivers import MUJOCO, SIMULATED, TELL_WHERE_THEY_STAND, calibration_of, make_driver
+from hardware.gentle_move import in_words
+from hardware.journal_entry import Entry
+from hardware.player import play
+from hardware.playing import Played, Progress
+from hardware.port import Line
+from hardware.programme import Programme
+from hardware.simulated_arm import Recording, Servos, SimulatedArm
+from planner.arms.arm import Arm
+from planner.cli.controls import KEYS, controls
+from planner.cli.keeping import Keeping
+from planner.cli.terminal import Show, print_note, print_warnings, progress
+from planner.errors import HardwareError
+
+if TYPE_CHECKING:
+    from hardware.mujoco_arm import MujocoArm
+
+_REPORTS_A_SECOND = 10
+
+
+@dataclass(frozen=True, slots=True)
+class Rig:
+    """What a run plays on, and the clock that it goes by. recording: of a simulated arm, None of a real one."""
+
+    driver: Driver
+    clock: Clock
+    recording: Callable[[], Recording] | None
+
+
+def set_up(options: argparse.Namespace, arm: Arm) -> Rig:
+    """Nothing is opened yet. Errors: ArmFileError where the arm file does not say how joints are moved."""
+    clock = InstantClock() if options.fast else WallClock()
+    simulated = _simulated(options, arm, clock)
+    if simulated is None:
+        return Rig(make_driver(options.driver, arm, Line(options.port or "", options.baud), clock), clock, None)
+    return Rig(simulated, clock, lambda: simulated.recording)
+
+
+def play_out(options: argparse.Namespace, arm: Arm, programme: Programme, rig: Rig, beginning: Entry,
+             last_stroke: int) -> Played:
+    """What became of the programme. Errors: HardwareError, OutputError."""
+    keeping = Keeping(options, beginning, last_stroke, rig.driver, programme.rate_hz, rig.clock)
+    ended, complete = "broken off", False
+    with progress(quiet=options.quiet, single=True) as show:
+        try:
+            with controls() as wishes:
+                def connected() -> None:
+                    if wishes.has_keys and not options.quiet:
+                        print_note(KEYS)
+                    keeping.connected()
+
+                rig.driver.open()
+                if not options.quiet and options.port:
+                    print_note(_announced(options, programme, arm))
+                keeping.opened()
+                played = play(programme, arm, rig.driver, rig.clock, request=wishes.request,
+                              report=_reporting(show, rig.driver, programme.rate_hz, last_stroke),
+                              connected=connected, sent=keeping.sent, finished=keeping.finished,
+                              onward=keeping.onward, reached=keeping.reached)
+            ended, complete = played.end.value, played.complete
+        except HardwareError as error:
+            ended = str(error)
+            raise
+        finally:  # before the last words, which a terminal that is stuck may never take
+            keeping.close(ended, complete=complete)
+    return played
+
+
+def _simulated(options: argparse.Namespace, arm: Arm, clock: Clock) -> SimulatedArm | MujocoArm | None:
+    if options.driver == SIMULATED:
+        servos = Servos(options.servos)
+        if servos is Servos.REAL and calibration_of(SIMULATED, arm) is None:
+            print_warnings([f"the file of arm '{arm.name}' says neither servo nor bus of all its joints: their servos "
+                            "lag behind, without dead band, backlash and resolution"])
+            servos = Servos.LAGGING
+        return SimulatedArm(arm, clock, servos)
+    if options.driver == MUJOCO:
+        from hardware.mujoco_arm import MujocoArm
+
+        return MujocoArm(arm, clock, options.film)
+    return None
+
+
+def _announced(options: argparse.Namespace, programme: Programme, arm: Arm) -> str:
+    """What is going to happen once the controller answers."""
+    park, approach_s = in_words(arm, programme.park), programme.approach / programme.rate_hz
+    if options.driver in TELL_WHERE_THEY_STAND:
+        return (f"the arm goes slowly from where its servos stand to the park pose ({park}), from which it takes "
+                f"{approach_s:.1f} s to the drawing")
+    return (f"where the arm stands is not known: its servos are attached at the park pose ({park}), from which it "
+            f"takes {approach_s:.1f} s to the drawing")
+
+
+def _reporting(show: Show, driver: Driver, rate_hz: float, last_stroke: int) -> Callable[[Progress], None]:
+    """Shows progress a few times a second."""
+    between = max(round(rate_hz / _REPORTS_A_SECOND), 1)
+    calls = 0
+
+    def report(now: Progress) -> None:
+        nonlocal calls
+        calls += 1
+        if calls % between and now.reached < now.total:
+            return
+        doing = f"stroke {now.stroke} of 0..{last_stroke}" if now.stroke >= 0 else "travelling"
+        state = f"{'paused' if now.paused else doing}, {now.left_s:.0f} s left"
+        show("\n".join((state, *driver.statistics())), now.reached, now.total)
+
+    return report

@@ -1,0 +1,23 @@
+"""The bar of a plan: it moves from the first moment on, through every stage, and never back."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+from planner.cli.plan import _WORK, _of_all
+from planner.pipeline import plan
+from planner.settings import PlanSettings
+
+
+def test_the_bar_goes_through_all_stages_and_never_back(tmp_path: Path) -> None:
+    drawing = tmp_path / "drawing.svg"
+    drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M2 2 5 4M7 7l1 0"/></svg>')
+    told: list[tuple[str, int, int]] = []
+    plan(drawing, PlanSettings(), lambda *now: told.append(now))
+    stages = list(dict.fromkeys(stage for stage, _, _ in told))
+    assert stages == [stage for stage in _WORK if stage != "report"]
+    assert len([stage for stage, _, _ in told if stage == "reading"]) > 3
+    shares = [done / total for done, total in (_of_all(*now) for now in told)]
+    assert shares[0] == 0.0 and all(before <= after for before, after in pairwise(shares))
+    assert _of_all("report", 1, 1)[0] == _of_all("report", 1, 1)[1]
