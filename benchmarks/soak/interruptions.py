@@ -56,9 +56,11 @@ _DOUBT_S = {Kind.RESET: _SET_POINT_S + _TOLD_S, Kind.KILL_AND_RESET: _SET_POINT_
 """Of drawing, that may be drawn twice: where the controller lost its memory what was not noted, where it was reset
 while it moved what not all servos had been told, else one set point."""
 _ENDINGS = {Kind.KILL: {-9}, Kind.KILL_AND_RESET: {-9}, Kind.KILL_AND_POWER: {-9}, Kind.HANG_UP: {0, 130},
-            Kind.TERMINATE: {0, 130}, Kind.CABLE: {4}, Kind.RESET: {4}, Kind.POWER: {4}, Kind.ERRORS: {0, 4},
+            Kind.TERMINATE: {0, 130}, Kind.CABLE: {4}, Kind.RESET: {0, 4}, Kind.POWER: {0, 4},
+            Kind.ERRORS: {0, 4},
             Kind.DISK: {0, 2}, Kind.SECOND: {0}}
-"""Exit codes; those of a run that several things befell are of any of them."""
+"""Exit codes; those of a run that several things befell are of any of them. 0 after a reset, too: it may come before
+the run has set out."""
 
 
 @dataclass
@@ -139,7 +141,7 @@ class Soak:
         controller = in_lock_step(self._built, folder)
         controller.sleep_until(_STARTS_S)
         ended: list[tuple[list[Kind], int]] = []  # what befell each run, and how many lines there were at its end
-        code = -1
+        code, begun = -1, 0
         for _ in range(_RUNS_PER_DRAWING):
             resume = ["--resume"] if csv.with_name("traj.csv.journal").exists() else []
             strikes_s = controller.now_s() + self._random.uniform(0.0, _STRIKES_WITHIN_S)
@@ -151,11 +153,15 @@ class Soak:
             if code == 0:
                 break
             self._leave_alone(controller, kinds)
-            ended.append((kinds, len(ink(controller.emulator, self._subject.arm))))
+            lines = len(ink(controller.emulator, self._subject.arm))
+            if csv.with_name("traj.csv.journal").exists():
+                ended.append((kinds, lines - begun))
+            else:  # as it has said: the disk was full from the first, and the next run begins anew on another sheet
+                ended, begun = [], lines
         controller.sleep_until(controller.now_s() + 0.1)
         if code != 0:
             self.wrong.append(f"drawing {self.drawings} was not done after {_RUNS_PER_DRAWING} runs")
-        self._examine(ink(controller.emulator, self._subject.arm), ended)
+        self._examine(ink(controller.emulator, self._subject.arm)[begun:], ended)
         controller.emulator.end()
         self.drawings += 1
 

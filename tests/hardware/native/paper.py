@@ -30,9 +30,15 @@ def ink(emulator: Emulator, arm: Arm) -> list[FloatArray]:
     pieces = np.split(np.arange(len(times_s)), np.flatnonzero(held[1:] != held[:-1]) + 1)
     lines: list[FloatArray] = []
     for piece in (times_s[piece] for piece in pieces if held[piece[0]]):
+        piece = np.append(piece, min(_next(one, piece[-1]) for one in channels))  # fast ink is cut off between steps
         pulses_us = np.column_stack([_between(one, piece) for one in channels])
         lines += drawn_lines(arm, calibration.to_joints(pulses_us))
     return lines
+
+
+def _next(one: Pulses, time_s: float) -> float:
+    """When the pulse after `time_s` begins; the last one, if there is none."""
+    return float(one.starts_s[min(int(np.searchsorted(one.starts_s, time_s, side="right")), len(one.starts_s) - 1)])
 
 
 def _between(one: Pulses, times_s: FloatArray) -> FloatArray:
