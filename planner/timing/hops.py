@@ -69,7 +69,8 @@ class Hop:
     """Joint samples (n_samples, n_joints) of a hop, both ends included, and the durations of its phases in s.
 
     exact: False where the pen could not be kept on its way, or a joint left its limits. held: whether the tip is within
-    the tolerance between samples. collision: where links would come too close.
+    the tolerance between samples. collision: where links would come too close. too_long_s: how long it would have to
+    last at least where that is more than a move may, so that its samples break limits; 0 where it is not.
     """
 
     joints: FloatArray
@@ -79,6 +80,7 @@ class Hop:
     exact: bool
     held: bool = True
     collision: Collision | None = None
+    too_long_s: float = 0.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -92,8 +94,7 @@ class Touch:
 def plan_hops(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Sequence[Touch | None],
               meet: Sequence[Touch | None]) -> list[Hop]:
     """Hops from each `leave` to the `meet` of the same index. Where one of the two is None the hop begins, or
-    ends, at the lift height above the other, as at the two ends of a drawing. Errors: UsageError where one takes too
-    long to be part of a plan."""
+    ends, at the lift height above the other, as at the two ends of a drawing."""
     shapes = [_Shape.of(rules, one, other) for one, other in zip(leave, meet, strict=True)]
     lifts = quickest_lifts(kinematics, limits.jerk, np.concatenate([shape.postures for shape in shapes]))
     lifted = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
@@ -105,13 +106,18 @@ def plan_hops(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Se
     return hops
 
 
+def require_bounded_hops(hops: Sequence[Hop], rules: HopRules) -> None:
+    """Errors: UsageError where one would last for longer than a move may."""
+    require_bounded(max((hop.too_long_s for hop in hops), default=0.0), rules.rate_hz, "one pen-up move", _TOO_SLOW,
+                    MOST_SAMPLES_OF_A_HOP)
+
+
 def _along(kinematics: Kinematics, limits: Limits, rules: HopRules, shapes: Sequence[_Shape]) -> list[Hop]:
     """Hops of these shapes, as quick as they may be."""
     if not shapes:
         return []
     plans = _timed(shapes, _joint_slopes(kinematics, shapes), limits, rules)
-    for plan in plans:
-        require_bounded(plan.duration_s, rules.rate_hz, "one pen-up move", _TOO_SLOW, MOST_SAMPLES_OF_A_HOP)
+    plans = [plan.lasting(plan.duration_s, rules) for plan in plans]
     fine, _ = _sampled(kinematics, plans, _FINE * rules.rate_hz)
     plans = [plan.slowed(limits.slowing_of(joints, 1 / (_FINE * rules.rate_hz)) * 1.0005, rules)
              for plan, joints in zip(plans, fine, strict=True)]
@@ -201,6 +207,7 @@ class _Timed:
     clear_until_s: float
     natural_s: float
     factor: float = 1.0
+    too_long_s: float = 0.0
 
     @property
     def duration_s(self) -> float:
@@ -221,9 +228,15 @@ class _Timed:
         falls = (self.down.highest_speed, -self.above.lowest_velocity if self.above else 0.0)
         lowering = max(falls) / rules.lowering_speed_mm_s
         duration = self.natural_s * max(needed, lowering)
-        require_bounded(duration, rules.rate_hz, "one pen-up move", _TOO_SLOW, MOST_SAMPLES_OF_A_HOP)
         whole = max(np.ceil(duration * rules.rate_hz - 1e-9), 1.0) / rules.rate_hz
-        return replace(self, factor=float(whole / self.natural_s))
+        return self.lasting(float(whole), rules)
+
+    def lasting(self, duration_s: float, rules: HopRules) -> _Timed:
+        """The same in `duration_s`, or in the longest that a move may last, which is noted then."""
+        longest_s = MOST_SAMPLES_OF_A_HOP / rules.rate_hz
+        fits = duration_s <= longest_s
+        return replace(self, factor=(duration_s if fits else longest_s) / self.natural_s,
+                       too_long_s=0.0 if fits else duration_s)
 
     def way(self, times_s: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Fraction of the way and height in mm at times (n,) after the start."""
@@ -238,7 +251,8 @@ class _Timed:
     def hop(self, joints: FloatArray, exact: bool, held: bool) -> Hop:
         lifting = self.over_begins_s * self.factor
         lowering = (self.natural_s - self.clear_until_s) * self.factor
-        return Hop(joints, lifting, max(self.duration_s - lifting - lowering, 0.0), lowering, exact, held)
+        return Hop(joints, lifting, max(self.duration_s - lifting - lowering, 0.0), lowering, exact, held,
+                   too_long_s=self.too_long_s)
 
 
 def _joint_slopes(kinematics: Kinematics, shapes: Sequence[_Shape]) -> Slopes:

@@ -17,6 +17,8 @@ import ruckig
 from planner.arrays import FloatArray
 
 _MIRRORED = 1e-9
+_NOTHING = 1e-100
+"""Distances so short that their squares vanish take no time."""
 _AMPLE, _SCARCE = 10.0, 1e-3
 """Speeds and accelerations of a move over 1 at a jerk of 1: more than it can use, and so little that jerk counts for
 nothing."""
@@ -93,7 +95,7 @@ def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: fl
     Ruckig is asked for a move over 1 at a jerk of 1, so that its tolerances fit whatever the scale of the limits. Where
     speed or acceleration is so scarce that jerk costs no time to speak of, less of it does.
     """
-    if distance <= 0.0:
+    if distance <= _NOTHING:
         return RestToRest(0.0, (0.0, 0.0), ((0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)))
     unit_s = max(math.cbrt(distance / jerk), _SCARCE * distance / velocity,
                  math.sqrt(_SCARCE * distance / acceleration))
