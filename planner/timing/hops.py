@@ -46,6 +46,8 @@ _SLOWER, _MARGIN = 1.5, 0.98
 """Most that a hop is slowed by at a time for the tip to keep to its way between samples, and a little beyond need."""
 _HELPED = 0.97
 """Slowing has helped where the tip strays by less than this share of before."""
+_JUMP = 1.01
+"""A move that was slowed to its limits and still needs to be this much slower jumps from posture to posture."""
 _SAMPLES_AT_ONCE = 100_000
 _TOO_SLOW = "choose a higher --lowering-speed, a lower --rate or --lift, or raise the limits of the arm's joints"
 _TURN_MARGIN = 0.999
@@ -68,9 +70,10 @@ class HopRules:
 class Hop:
     """Joint samples (n_samples, n_joints) of a hop, both ends included, and the durations of its phases in s.
 
-    exact: False where the pen could not be kept on its way, or a joint left its limits. held: whether the tip is within
-    the tolerance between samples. collision: where links would come too close. too_long_s: how long it would have to
-    last at least where that is more than a move may, so that its samples break limits; 0 where it is not.
+    exact: False where the pen could not be kept on its way, or a joint left its range, or jumps however slow the move.
+    held: whether the tip is within the tolerance between samples. collision: where links would come too close.
+    too_long_s: how long it would have to last at least where that is more than a move may, so that its samples break
+    limits; 0 where it is not.
     """
 
     joints: FloatArray
@@ -121,10 +124,10 @@ def _along(kinematics: Kinematics, limits: Limits, rules: HopRules, shapes: Sequ
     fine, _ = _sampled(kinematics, plans, _FINE * rules.rate_hz)
     plans = [plan.slowed(limits.slowing_of(joints, 1 / (_FINE * rules.rate_hz)) * 1.0005, rules)
              for plan, joints in zip(plans, fine, strict=True)]
-    return _held(kinematics, plans, rules)
+    return _held(kinematics, limits, plans, rules)
 
 
-def _held(kinematics: Kinematics, plans: Sequence[_Timed], rules: HopRules) -> list[Hop]:
+def _held(kinematics: Kinematics, limits: Limits, plans: Sequence[_Timed], rules: HopRules) -> list[Hop]:
     """The hops, each as slow as it has to be for the tip to keep to its way between samples. One that slowing does not
     help, as where postures jump to another branch, stays as quick as it was before."""
     hops: dict[int, Hop] = {}
@@ -134,9 +137,12 @@ def _held(kinematics: Kinematics, plans: Sequence[_Timed], rules: HopRules) -> l
         excess = hop_excess(kinematics, joints, [plan.shape.ends_mm for plan in plans],
                             [plan.shape.touches for plan in plans], rules.clearance_mm, rules.tolerance_mm)
         helped = excess < _HELPED * before
-        hops.update((index, plan.hop(samples, bool(good.all()), over <= 1.0)) for index, plan, samples, good, over, kept
-                    in zip(left.tolist(), plans, joints, exact, excess.tolist(), helped.tolist(), strict=True) if kept)
-        over = np.flatnonzero(helped & (excess > 1.0))
+        steady = [limits.slowing_of(samples, 1 / rules.rate_hz) < _JUMP for samples in joints]
+        hops.update((index, plan.hop(samples, bool(good.all()) and moves, over <= 1.0))
+                    for index, plan, samples, good, moves, over, kept in zip(
+                        left.tolist(), plans, joints, exact, steady, excess.tolist(), helped.tolist(), strict=True)
+                    if kept)
+        over = np.flatnonzero(helped & steady & (excess > 1.0))
         plans = [plans[index].slowed(plans[index].factor * min(np.sqrt(excess[index]), _SLOWER) / _MARGIN, rules)
                  for index in over.tolist()]
         left, before = left[over], excess[over]
@@ -241,7 +247,8 @@ class _Timed:
     def way(self, times_s: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Fraction of the way and height in mm at times (n,) after the start."""
         times = times_s / self.factor
-        height = np.where(times < self.up.duration_s, self.shape.from_mm + self.up.at(times),
+        rises_until_s = self.clear_until_s if self.above else self.up.duration_s
+        height = np.where(times < rises_until_s, self.shape.from_mm + self.up.at(times),
                           self.shape.to_mm + self.down.at(self.natural_s - times))
         if self.above:
             clear = (times > self.over_begins_s) & (times < self.clear_until_s)
