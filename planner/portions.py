@@ -32,7 +32,7 @@ from planner.settings import Method, PlanSettings
 from planner.timing.branch_change import keeps_branch, plan_branch_change
 from planner.timing.bulge_cap import bulge_cap
 from planner.timing.held_motion import timed_within
-from planner.timing.hops import Hop, HopRules, Touch, plan_hops
+from planner.timing.hops import Hop, HopRules, Touch, plan_hops, require_bounded_hops
 from planner.timing.limits import Limits
 from planner.timing.speed_cap import rate_cap
 from planner.timing.timing_problem import FRACTIONS
@@ -169,7 +169,7 @@ def timed_strokes(portion: StrokePortion) -> list[TimedStroke | Obstacle]:
 
 
 def planned_hops(portion: HopPortion) -> list[Hop]:
-    """The hops of a portion."""
+    """The hops of a portion. Errors: UsageError where one would last for longer than a move may."""
     kinematics, limits = kinematics_of(portion.kit.arm), Limits.of(portion.kit.arm)
     hops = _with_collisions(kinematics.arm, plan_hops(kinematics, limits, portion.rules, portion.leave, portion.meet))
     for index, (hop, leave, meet) in enumerate(zip(hops, portion.leave, portion.meet, strict=True)):
@@ -178,6 +178,7 @@ def planned_hops(portion: HopPortion) -> list[Hop]:
             if not stays or hop.collision:
                 change = plan_branch_change(kinematics, limits, portion.rules, leave, meet)
                 hops[index] = change if change.exact or not stays else hop
+    require_bounded_hops(hops, portion.rules)
     return _with_collisions(kinematics.arm, hops)
 
 

@@ -140,9 +140,9 @@ def test_an_arm_file_that_contradicts_itself_is_refused_with_every_fault(
 @pytest.mark.parametrize(("base", "changes", "part"), [
     ("drawing_arm", [("d_mm = 50.0", "d_mm = 500.0")], "no posture"),  # a shoulder too high for the paper
     ("scara", [("min_mm = -125.0", "min_mm = -110.0")], "no posture"),  # a slide too short for it
-    ("three_joint", [('hold = "free"', 'hold = "tool_axis"')], "no posture"),  # too few joints to point the pen
+    ("three_joint", [('hold = "free"', 'hold = "tool_axis"')], "takes 4 joints"),  # too few joints to point the pen
     ("scara", [("inner_radius_mm = 60.0", "inner_radius_mm = 260.0")], "260 mm"),  # the ring begins beyond reach
-    ("scara", [("lift_mm = 5.0", "lift_mm = 60.0")], "lift it by 60 mm"),  # a lift that the slide has not
+    ("scara", [("lift_mm = 5.0", "lift_mm = 60.0")], "lower pen.lift_mm"),  # a lift that the slide has not
 ])
 def test_an_arm_that_cannot_draw_is_refused_with_the_reason(
         base: str, changes: list[tuple[str, str]], part: str, drawing: Path, tmp_path: Path,

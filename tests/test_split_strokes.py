@@ -58,7 +58,7 @@ def test_strokes_across_both_are_split_drawn_and_told(
         arm_file: Path, drawing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     output = tmp_path / "triangle.csv"
     assert main([str(drawing), "-o", str(output), "--arm", str(arm_file)]) == 0
-    assert "split, as no one branch of postures reaches all of each: 1 strokes, with 3 more pen lifts" in (
+    assert "split, as no one branch of postures reaches all of each: 1 stroke, with 3 more pen lifts" in (
         capsys.readouterr().err)
     assert main(["check", str(output), "--drawing", str(drawing)]) == 0, capsys.readouterr().out
     trajectory = read_trajectory(output)

@@ -87,7 +87,7 @@ def test_hops_between_postures_that_collide_are_told() -> None:
     tips = np.array([[field.radii_mm[0] + 0.1, 0.0], [100.0, 0.0]])
     postures, _ = field.postures_at(np.column_stack((tips, np.zeros(2))))
     near, far = (Touch(tip, posture) for tip, posture in zip(tips, postures, strict=True))
-    rules = HopRules(1.0, 5.0, 30.0, 100.0)
+    rules = HopRules(1.0, 5.0, 30.0, 100.0, 0.05)
     portion = HopPortion(Kit.of(arm, PlanSettings()), rules, [None, far, near], [far, near, None])
     clear, comes, goes = (hop.collision for hop in planned_hops(portion))
     assert clear is None and comes is not None and goes is not None

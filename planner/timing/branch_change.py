@@ -26,7 +26,8 @@ _PROBES = np.linspace(0.0, 1.0, 41)
 def keeps_branch(kinematics: Kinematics, hop: Hop, limits: Limits, rules: HopRules, meet: Touch) -> bool:
     """Whether a hop arrives in the posture of its end with no jump: between two branches it cannot."""
     arrives = np.abs(kinematics.free_of(hop.joints[-1]) - meet.posture).max() < _MET
-    return hop.exact and bool(arrives) and limits.slowing_of(hop.joints, 1 / rules.rate_hz) <= 1 + 1e-6
+    jumps = bool(hop.too_long_s) or limits.slowing_of(hop.joints, 1 / rules.rate_hz) > 1 + 1e-6
+    return hop.exact and bool(arrives) and not jumps
 
 
 def plan_branch_change(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Touch, meet: Touch) -> Hop:
@@ -38,7 +39,7 @@ def plan_branch_change(kinematics: Kinematics, limits: Limits, rules: HopRules, 
     over_s = sum(map(len, legs)) / rules.rate_hz
     return Hop(np.concatenate((up.joints, *legs, down.joints[1:])), up.lifting_s,
                up.travelling_s + up.lowering_s + over_s + down.lifting_s + down.travelling_s, down.lowering_s,
-               up.exact and down.exact and len(legs) > 0)
+               up.exact and down.exact and len(legs) > 0, too_long_s=max(up.too_long_s, down.too_long_s))
 
 
 def _way(kinematics: Kinematics, limits: Limits, rules: HopRules, start: FloatArray, end: FloatArray) -> FloatArray:

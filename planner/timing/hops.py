@@ -46,6 +46,8 @@ _SLOWER, _MARGIN = 1.5, 0.98
 """Most that a hop is slowed by at a time for the tip to keep to its way between samples, and a little beyond need."""
 _HELPED = 0.97
 """Slowing has helped where the tip strays by less than this share of before."""
+_JUMP = 1.01
+"""A move that was slowed to its limits and still needs to be this much slower jumps from posture to posture."""
 _SAMPLES_AT_ONCE = 100_000
 _TOO_SLOW = "choose a higher --lowering-speed, a lower --rate or --lift, or raise the limits of the arm's joints"
 _TURN_MARGIN = 0.999
@@ -68,8 +70,10 @@ class HopRules:
 class Hop:
     """Joint samples (n_samples, n_joints) of a hop, both ends included, and the durations of its phases in s.
 
-    exact: False where the pen could not be kept on its way, or a joint left its limits. held: whether the tip is within
-    the tolerance between samples. collision: where links would come too close.
+    exact: False where the pen could not be kept on its way, or a joint left its range, or jumps however slow the move.
+    held: whether the tip is within the tolerance between samples. collision: where links would come too close.
+    too_long_s: how long it would have to last at least where that is more than a move may, so that its samples break
+    limits; 0 where it is not.
     """
 
     joints: FloatArray
@@ -79,6 +83,7 @@ class Hop:
     exact: bool
     held: bool = True
     collision: Collision | None = None
+    too_long_s: float = 0.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -92,8 +97,7 @@ class Touch:
 def plan_hops(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Sequence[Touch | None],
               meet: Sequence[Touch | None]) -> list[Hop]:
     """Hops from each `leave` to the `meet` of the same index. Where one of the two is None the hop begins, or
-    ends, at the lift height above the other, as at the two ends of a drawing. Errors: UsageError where one takes too
-    long to be part of a plan."""
+    ends, at the lift height above the other, as at the two ends of a drawing."""
     shapes = [_Shape.of(rules, one, other) for one, other in zip(leave, meet, strict=True)]
     lifts = quickest_lifts(kinematics, limits.jerk, np.concatenate([shape.postures for shape in shapes]))
     lifted = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
@@ -105,20 +109,25 @@ def plan_hops(kinematics: Kinematics, limits: Limits, rules: HopRules, leave: Se
     return hops
 
 
+def require_bounded_hops(hops: Sequence[Hop], rules: HopRules) -> None:
+    """Errors: UsageError where one would last for longer than a move may."""
+    require_bounded(max((hop.too_long_s for hop in hops), default=0.0), rules.rate_hz, "one pen-up move", _TOO_SLOW,
+                    MOST_SAMPLES_OF_A_HOP)
+
+
 def _along(kinematics: Kinematics, limits: Limits, rules: HopRules, shapes: Sequence[_Shape]) -> list[Hop]:
     """Hops of these shapes, as quick as they may be."""
     if not shapes:
         return []
     plans = _timed(shapes, _joint_slopes(kinematics, shapes), limits, rules)
-    for plan in plans:
-        require_bounded(plan.duration_s, rules.rate_hz, "one pen-up move", _TOO_SLOW, MOST_SAMPLES_OF_A_HOP)
+    plans = [plan.lasting(plan.duration_s, rules) for plan in plans]
     fine, _ = _sampled(kinematics, plans, _FINE * rules.rate_hz)
     plans = [plan.slowed(limits.slowing_of(joints, 1 / (_FINE * rules.rate_hz)) * 1.0005, rules)
              for plan, joints in zip(plans, fine, strict=True)]
-    return _held(kinematics, plans, rules)
+    return _held(kinematics, limits, plans, rules)
 
 
-def _held(kinematics: Kinematics, plans: Sequence[_Timed], rules: HopRules) -> list[Hop]:
+def _held(kinematics: Kinematics, limits: Limits, plans: Sequence[_Timed], rules: HopRules) -> list[Hop]:
     """The hops, each as slow as it has to be for the tip to keep to its way between samples. One that slowing does not
     help, as where postures jump to another branch, stays as quick as it was before."""
     hops: dict[int, Hop] = {}
@@ -128,9 +137,12 @@ def _held(kinematics: Kinematics, plans: Sequence[_Timed], rules: HopRules) -> l
         excess = hop_excess(kinematics, joints, [plan.shape.ends_mm for plan in plans],
                             [plan.shape.touches for plan in plans], rules.clearance_mm, rules.tolerance_mm)
         helped = excess < _HELPED * before
-        hops.update((index, plan.hop(samples, bool(good.all()), over <= 1.0)) for index, plan, samples, good, over, kept
-                    in zip(left.tolist(), plans, joints, exact, excess.tolist(), helped.tolist(), strict=True) if kept)
-        over = np.flatnonzero(helped & (excess > 1.0))
+        steady = [limits.slowing_of(samples, 1 / rules.rate_hz) < _JUMP for samples in joints]
+        hops.update((index, plan.hop(samples, bool(good.all()) and moves, over <= 1.0))
+                    for index, plan, samples, good, moves, over, kept in zip(
+                        left.tolist(), plans, joints, exact, steady, excess.tolist(), helped.tolist(), strict=True)
+                    if kept)
+        over = np.flatnonzero(helped & steady & (excess > 1.0))
         plans = [plans[index].slowed(plans[index].factor * min(np.sqrt(excess[index]), _SLOWER) / _MARGIN, rules)
                  for index in over.tolist()]
         left, before = left[over], excess[over]
@@ -201,6 +213,7 @@ class _Timed:
     clear_until_s: float
     natural_s: float
     factor: float = 1.0
+    too_long_s: float = 0.0
 
     @property
     def duration_s(self) -> float:
@@ -221,14 +234,21 @@ class _Timed:
         falls = (self.down.highest_speed, -self.above.lowest_velocity if self.above else 0.0)
         lowering = max(falls) / rules.lowering_speed_mm_s
         duration = self.natural_s * max(needed, lowering)
-        require_bounded(duration, rules.rate_hz, "one pen-up move", _TOO_SLOW, MOST_SAMPLES_OF_A_HOP)
         whole = max(np.ceil(duration * rules.rate_hz - 1e-9), 1.0) / rules.rate_hz
-        return replace(self, factor=float(whole / self.natural_s))
+        return self.lasting(float(whole), rules)
+
+    def lasting(self, duration_s: float, rules: HopRules) -> _Timed:
+        """The same in `duration_s`, or in the longest that a move may last, which is noted then."""
+        longest_s = MOST_SAMPLES_OF_A_HOP / rules.rate_hz
+        fits = duration_s <= longest_s
+        return replace(self, factor=(duration_s if fits else longest_s) / self.natural_s,
+                       too_long_s=0.0 if fits else duration_s)
 
     def way(self, times_s: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Fraction of the way and height in mm at times (n,) after the start."""
         times = times_s / self.factor
-        height = np.where(times < self.up.duration_s, self.shape.from_mm + self.up.at(times),
+        rises_until_s = self.clear_until_s if self.above else self.up.duration_s
+        height = np.where(times < rises_until_s, self.shape.from_mm + self.up.at(times),
                           self.shape.to_mm + self.down.at(self.natural_s - times))
         if self.above:
             clear = (times > self.over_begins_s) & (times < self.clear_until_s)
@@ -238,7 +258,8 @@ class _Timed:
     def hop(self, joints: FloatArray, exact: bool, held: bool) -> Hop:
         lifting = self.over_begins_s * self.factor
         lowering = (self.natural_s - self.clear_until_s) * self.factor
-        return Hop(joints, lifting, max(self.duration_s - lifting - lowering, 0.0), lowering, exact, held)
+        return Hop(joints, lifting, max(self.duration_s - lifting - lowering, 0.0), lowering, exact, held,
+                   too_long_s=self.too_long_s)
 
 
 def _joint_slopes(kinematics: Kinematics, shapes: Sequence[_Shape]) -> Slopes:

@@ -17,6 +17,10 @@ import ruckig
 from planner.arrays import FloatArray
 
 _MIRRORED = 1e-9
+_NOTHING = 1e-100
+"""Distances so short that their squares vanish take no time."""
+_JOINT = 1e-6
+"""Share of its positions and of its speeds that a move may jump by between two pieces."""
 _AMPLE, _SCARCE = 10.0, 1e-3
 """Speeds and accelerations of a move over 1 at a jerk of 1: more than it can use, and so little that jerk counts for
 nothing."""
@@ -93,7 +97,7 @@ def rest_to_rest(distance: float, velocity: float, acceleration: float, jerk: fl
     Ruckig is asked for a move over 1 at a jerk of 1, so that its tolerances fit whatever the scale of the limits. Where
     speed or acceleration is so scarce that jerk costs no time to speak of, less of it does.
     """
-    if distance <= 0.0:
+    if distance <= _NOTHING:
         return RestToRest(0.0, (0.0, 0.0), ((0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)))
     unit_s = max(math.cbrt(distance / jerk), _SCARCE * distance / velocity,
                  math.sqrt(_SCARCE * distance / acceleration))
@@ -147,4 +151,16 @@ def _calculated(request: ruckig.InputParameter) -> tuple[tuple[float, ...], _Sta
     states = tuple(zip(profile.p, profile.v, profile.a, (*profile.j, 0.0), strict=True))
     if not all(map(math.isfinite, chain(begins_s, *states))):
         raise NoSuchMove("numbers beyond what a computer holds")
+    if not _joined(begins_s, states):
+        raise NoSuchMove("its pieces do not join")
     return begins_s, states
+
+
+def _joined(begins_s: tuple[float, ...], states: _States) -> bool:
+    """Whether each piece ends where the next begins, in position and in velocity."""
+    begins, (position, velocity, acceleration, jerk) = np.array(begins_s), np.array(states).T
+    into = np.diff(begins)
+    reached = position[:-1] + into * (velocity[:-1] + into * (acceleration[:-1] / 2 + into * jerk[:-1] / 6))
+    speed = velocity[:-1] + into * (acceleration[:-1] + into * jerk[:-1] / 2)
+    return bool(np.abs(reached - position[1:]).max() <= _JOINT * np.abs(position).max()
+                and np.abs(speed - velocity[1:]).max() <= _JOINT * np.abs(velocity).max())

@@ -47,21 +47,21 @@ def test_out_of_reach_exits_3_and_leaves_nothing(tmp_path: Path, capsys: pytest.
     assert not target.exists()
 
 
-def test_json_on_standard_output_is_all_there_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_on_standard_output_is_all_there_is(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     picture = tmp_path / "postures.svg"
     assert main(["compare", "--arm", "three_joint", "--target", "15cm", "-20", "--target", "150", "-20", "0",
                  "--json", "-", "--plot", str(picture)]) == 0
-    found = json.loads(capsys.readouterr().out)
+    found = json.loads(capfd.readouterr().out)
     assert found["targets"]["tips_mm"] == [[150.0, -20.0, 0.0]] * 2
     assert found["methods"][0]["postures"][0] == found["methods"][0]["postures"][1]
     assert picture.read_text().startswith("<?xml")
 
 
-def test_the_same_seed_compares_the_same_targets(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_same_seed_compares_the_same_targets(capfd: pytest.CaptureFixture[str]) -> None:
     measured = ("cold_ms", "warm_us")
     found = []
     for seed in ("4", "4", "5"):
         assert main(["compare", "--arm", "three_joint", "--random", "6", "--seed", seed, "--json", "-"]) == 0
         found.append([{key: value for key, value in method.items() if key not in measured}
-                      for method in json.loads(capsys.readouterr().out)["methods"]])
+                      for method in json.loads(capfd.readouterr().out)["methods"]])
     assert found[0] == found[1] != found[2]

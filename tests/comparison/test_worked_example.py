@@ -29,7 +29,7 @@ def compared(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str, o
     folder = tmp_path_factory.mktemp("example")
     with pytest.MonkeyPatch.context() as patch:
         lines: list[str] = []
-        patch.setattr("planner.cli.compare.print_lines", lines.extend)
+        patch.setattr("planner.cli.compare.print_summary", lambda told: lines.extend(told))
         assert main(["compare", "--target", "53", "47.8", "0", "--json", str(folder / "example.json")]) == 0
     return "\n".join(lines), json.loads((folder / "example.json").read_text())
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from planner.arms.arm import Arm
@@ -189,6 +189,7 @@ def test_the_quickest_lift_goes_straight_up_and_no_other_way_is_quicker(name: st
 def test_moves_between_states_join_them_within_limits(
         up: float, braking: float, down: float, jerk: float, least_s: float) -> None:
     start = (up, -braking * np.sqrt(2 * jerk * up))
+    assume(abs(up - down) > 1e-3 * up or abs(start[1]) > 1e-3)  # ends that mirror each other are refused, see below
     move = between_states(1.0, start, (-down, 0.0), -30.001, (500.0, 1e4 + abs(start[1]), jerk), least_s)
     assert move.duration_s >= least_s - 1e-9
     np.testing.assert_allclose(move.at(np.array([0.0, move.duration_s])), 1.0, atol=1e-6)

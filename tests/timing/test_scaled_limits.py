@@ -30,7 +30,7 @@ def touches_of(name: str) -> tuple[Touch, ...]:
     """Places about a centimetre and about five apart, in the middle of the arm's reach."""
     arm = load_once(name)
     field = posture_field(arm)
-    for radius in np.linspace(60.0, 300.0, 25):
+    for radius in np.linspace(arm.workspace.inner_radius_mm + 10.0, 300.0, 25):
         tips = np.array([[radius, 0.0], [radius + 3.0, 9.0], [radius + 3.2, 9.0], [radius, -40.0]])
         free, good = field.postures_at(np.column_stack((tips, np.zeros(len(tips)))))
         if good.all():

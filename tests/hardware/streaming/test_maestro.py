@@ -48,7 +48,7 @@ def test_servos_are_attached_one_by_one_then_follow_byte_for_byte(name: str) -> 
     assert model.targets[5:] == [(0, 6494), *list(enumerate(POSE_QUARTERS))[1:]]
     assert far.received[before:before + 4] == bytes.fromhex("84 00 5E 32")
     assert driver.executed() == 1
-    assert "1 set point in" in driver.statistics()[0]
+    assert "1 set point " in driver.statistics()[0]
 
 
 def test_servos_that_the_board_holds_elsewhere_glide_to_the_pose() -> None:
