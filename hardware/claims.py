@@ -12,7 +12,7 @@ import stat
 import sys
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -48,9 +48,10 @@ def claim(path: Path, doing: str) -> Iterator[None]:
         return
     try:
         since = datetime.now(UTC).isoformat(sep=" ", timespec="seconds")
-        os.ftruncate(descriptor, 0)
-        os.write(descriptor, f"process {os.getpid()}, {doing}, since {since}; wait for it to end, or end it: "
-                             f"kill {os.getpid()}".encode())
+        with suppress(OSError):  # a full disk: the lock holds all the same
+            os.ftruncate(descriptor, 0)
+            os.write(descriptor, f"process {os.getpid()}, {doing}, since {since}; wait for it to end, or end it: "
+                                 f"kill {os.getpid()}".encode())
         yield
     finally:
         path.unlink(missing_ok=True)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
 
 from planner.arrays import FloatArray
 
@@ -16,6 +17,9 @@ class Driver(Protocol):
     ahead_s: float
     """How long before its time a set point has to be handed over: 0 for controllers without a queue, which move at
     once. Where there is a queue, playing is paced by it, not by the host's clock."""
+
+    def open(self) -> None:
+        """Open the line, if it is not open yet, without a byte on it."""
 
     def connect(self, pose: FloatArray) -> None:
         """Open the line, attach the servos one after another at `pose` and stand there.
@@ -45,3 +49,26 @@ class Driver(Protocol):
 
     def statistics(self) -> list[str]:
         """Lines about the link for people: frames, retransmissions, under-runs, lateness."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """How a controller counts what it does in a run, so that another host can read its count: the run's number, the
+    count before the first set point, and how many set points go into one count."""
+
+    run: int
+    first: int
+    each: int
+
+
+@runtime_checkable
+class Remembering(Driver, Protocol):
+    """A driver whose controller goes on counting when its host is lost, and remembers the count."""
+
+    def tally(self, period_s: float) -> Tally:
+        """How the set points of this run, `period_s` apart, are counted; once connected."""
+
+    def recall(self, earlier: Tally | None) -> int | None:
+        """How many set points of the run `earlier` were reached, None where the controller remembers another run or
+        none, or nothing is asked but whether it is there. Before `connect`, which makes it forget; returns once the arm
+        stands."""

@@ -41,13 +41,14 @@ class MujocoArm:
     ahead_s = 0.0
 
     def __init__(self, arm: Arm, clock: Clock, film: Path | None = None) -> None:
-        """Errors: UsageError where MuJoCo is not installed, HardwareError where it finds no graphics for a film."""
+        """Errors: UsageError where MuJoCo is not installed."""
         self._mujoco = _imported()
         self._arm, self._clock = arm, clock
         self._scale = np.array([1.0 if joint.kind is JointKind.REVOLUTE else _M for joint in arm.joints])
         self._model = self._mujoco.MjModel.from_xml_string(model_of(arm))
         self._data = self._mujoco.MjData(self._model)
-        self._film = _Film(self._mujoco, self._model, film) if film else None
+        self._film_file = film
+        self._film: _Film | None = None
         self._connected = False
         self._at_s = 0.0
         self._recorder = Recorder(arm.n_joints)
@@ -62,7 +63,13 @@ class MujocoArm:
         tip_mm: FloatArray = self._data.site("tip").xpos / _M
         return tip_mm
 
+    def open(self) -> None:
+        """There is no line, but a film begins. Errors: HardwareError where there are no graphics for it."""
+        if self._film is None and self._film_file is not None:
+            self._film = _Film(self._mujoco, self._model, self._film_file)
+
     def connect(self, pose: FloatArray) -> None:
+        self.open()
         self._data.qpos[:] = self._data.ctrl[:] = pose * self._scale
         self._mujoco.mj_forward(self._model, self._data)
         self._at_s = self._clock.now_s()

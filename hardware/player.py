@@ -14,7 +14,7 @@ from hardware.driver import Driver
 from hardware.gentle_move import gentle_move
 from hardware.playing import End, Played, Progress, Request
 from hardware.programme import Programme
-from hardware.stopping import brake, lift, set_off
+from hardware.stopping import brake, lift, lower, set_off
 from hardware.tip import tip_at
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
@@ -25,15 +25,15 @@ _STALL_S = 0.1
 """After a stall longer than this the rest is played that much later: catching up would be a leap."""
 _THERE = 1e-6
 """So far from the park pose, in rad or mm, the arm is there."""
-_LOWERED_SLOWER = 3
-"""A pen comes down at a third of the pace at which it goes up."""
 
 
 def play(programme: Programme, arm: Arm, driver: Driver, clock: Clock, *,
          request: Callable[[], Request] = lambda: Request.GO,
          report: Callable[[Progress], None] = lambda progress: None,
          connected: Callable[[], None] = lambda: None, sent: Callable[[int], None] = lambda stroke: None,
-         finished: Callable[[int], None] = lambda stroke: None) -> Played:
+         finished: Callable[[int], None] = lambda stroke: None,
+         onward: Callable[[int, FloatArray], None] = lambda first, samples: None,
+         reached: Callable[[int, int], None] = lambda executed, sent: None) -> Played:
     """Play `programme`: set point k at k / rate after the start, later only by pauses and stalls.
 
     `request()` is asked before every set point. On a pause the arm brakes along the path and the pen goes straight up;
@@ -41,10 +41,12 @@ def play(programme: Programme, arm: Arm, driver: Driver, clock: Clock, *,
     e-stop it holds where it is. If something fails that is not the arm, such as `report`, it is stopped before the
     error goes on its way. `report(progress)` is called after every set point and has to be quick;
     `connected()` once the arm is ready to play, `sent(stroke)` once all of a stroke has been sent, `finished(stroke)`
-    once it is known to be drawn. The driver is closed in any case.
+    once it is known to be drawn. `onward(first, samples)` says where in the trajectory set points from number `first`
+    on (counted from 1) will be, before they are sent; `reached(executed, sent)` how many set points are known to have
+    been reached, of how many. The driver is closed in any case.
     Errors: HardwareError.
     """
-    playing = _Playing(programme, arm, driver, clock, request, report, sent, finished)
+    playing = _Playing(programme, arm, driver, clock, request, report, sent, finished, onward, reached)
     try:
         driver.connect(programme.park)
         connected()
@@ -81,10 +83,11 @@ class _Playing:
     """Where playing is: `_next` is the index of the set point of the programme to be sent next."""
 
     def __init__(self, programme: Programme, arm: Arm, driver: Driver, clock: Clock, request: Callable[[], Request],
-                 report: Callable[[Progress], None], sent: Callable[[int], None],
-                 finished: Callable[[int], None]) -> None:
+                 report: Callable[[Progress], None], sent: Callable[[int], None], finished: Callable[[int], None],
+                 onward: Callable[[int, FloatArray], None], reached: Callable[[int, int], None]) -> None:
         self._programme, self._arm, self._driver, self._clock = programme, arm, driver, clock
         self._request, self._report, self._stroke_sent, self._finished = request, report, sent, finished
+        self._onward, self._tell_reached = onward, reached
         stroke = programme.stroke
         self._last_of_stroke = np.flatnonzero((stroke != TRAVELLING) & (stroke != np.append(stroke[1:], TRAVELLING)))
         self._strokes_sent = 0
@@ -98,6 +101,7 @@ class _Playing:
 
     def begin(self) -> None:
         self._begin_s = self._start_s = self._clock.now_s()
+        self._onward(1, self._programme.sample)
 
     def run(self) -> End:
         while self._next < len(self._programme.positions):
@@ -115,6 +119,7 @@ class _Playing:
     def tell_nobody(self) -> None:
         self._report = lambda progress: None
         self._stroke_sent = self._finished = lambda stroke: None
+        self._onward, self._tell_reached = (lambda first, samples: None), (lambda executed, sent: None)
 
     def stop(self) -> None:
         """Brake, lift, park; where no way to the park pose is found the arm holds with its pen up."""
@@ -136,6 +141,7 @@ class _Playing:
             self._finished(self._unconfirmed.popleft()[1])
         while self._sent_at and self._sent_at[0][0] <= executed:
             self._reached = self._sent_at.popleft()[1]
+        self._tell_reached(executed, self._sent)
 
     def outcome(self, end: End) -> Played:
         late = np.percentile(self._late_s, (50, 99, 100)).tolist() if self._late_s else (0.0, 0.0, 0.0)
@@ -151,7 +157,7 @@ class _Playing:
         at = self._come_to_rest()
         resting, rate_hz = self._position, self._programme.rate_hz
         self._send_all(lift(self._arm, resting, rate_hz))
-        lowering = np.concatenate((resting[None], lift(self._arm, resting, rate_hz * _LOWERED_SLOWER)))[-2::-1]
+        lowering = lower(self._arm, resting, rate_hz)[1:]
         self._rested()
         while (request := self._request()) is Request.PAUSE:
             self._send(self._position)  # a controller that hears nothing would take the host for dead
@@ -160,21 +166,34 @@ class _Playing:
         if request is not Request.GO:
             self._off_path = True
             return
+        if not self._next:
+            self._send_all(lowering)
+            self._onward(self._sent + 1, self._programme.sample)
+            return
+        ramp = set_off(self._arm, self._programme.positions, at, rate_hz)
+        ahead = np.concatenate((np.full(len(lowering), float(at)), ramp.at,
+                                np.arange(ramp.end + 1.0, len(self._programme.positions))))
+        self._onward(self._sent + 1, self._samples(ahead))
         self._send_all(lowering)
-        if self._next:
-            ramp = set_off(self._arm, self._programme.positions, at, rate_hz)
-            self._send_all(ramp.points)
-            self._come_to(ramp.end)
+        self._send_all(ramp.points)
+        self._come_to(ramp.end)
 
     def _come_to_rest(self) -> int:
         """Brake from the set point sent last; the one where the arm then rests."""
         if not self._next or self._off_path:
+            self._onward(self._sent + 1, self._programme.sample[max(self._next - 1, 0)][None])
             return max(self._next - 1, 0)
         ramp = brake(self._arm, self._programme.positions, self._next - 1, self._programme.rate_hz)
+        self._onward(self._sent + 1, self._samples(ramp.at))
         self._send_all(ramp.points)
         self._come_to(ramp.end)
         self._rested()  # working out the lift now costs nothing but a moment's rest
         return ramp.end
+
+    def _samples(self, at: FloatArray) -> FloatArray:
+        """Samples of the trajectory at fractional indices `at` (n,) of the programme."""
+        samples: FloatArray = np.interp(at, np.arange(len(self._programme.sample)), self._programme.sample)
+        return samples
 
     def _send_all(self, points: FloatArray) -> None:
         for point in points:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,23 +34,20 @@ _WITHOUT_WRITE_TIMEOUT = "rfc2217://"
 class Line:
     """Where a controller is: a device name or a pyserial URL (socket://, rfc2217://, loop://), and how fast it talks.
 
-    baud: None for what the controller comes with. opened() is called once it is open, before a byte is sent.
+    baud: None for what the controller comes with.
     """
 
     name: str
     baud: int | None = None
-    opened: Callable[[], None] = lambda: None
 
     def open(self, usual_baud: int) -> Port:
         """An open port at `baud`, or at the one that is usual for the controller. Errors: HardwareError."""
         try:
-            port = Port(self.name, serial.serial_for_url(
+            return Port(self.name, serial.serial_for_url(
                 self.name, baudrate=self.baud or usual_baud, timeout=0.0, exclusive=True,
                 write_timeout=None if self.name.startswith(_WITHOUT_WRITE_TIMEOUT) else _WRITE_TIMEOUT_S))
         except _REFUSALS as error:
             raise HardwareError(f"{self.name}: {_why_not(self.name, error)}") from error
-        self.opened()
-        return port
 
 
 class Port:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hardware.gentle_move import gentle_move
-from hardware.stopping import interpolate, lift, set_off
+from hardware.stopping import interpolate, lift, lower, set_off
 from hardware.tip import link_nodes_mm
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray, IntArray
@@ -23,12 +23,14 @@ _LEAST_RATE_HZ = 50.0
 class Programme:
     """Set points at a fixed rate, the arm at rest at the first and at the last, which are both the park pose.
 
-    positions: (n, n_joints) rad or mm. stroke: (n,) index of the stroke being drawn, or TRAVELLING.
+    positions: (n, n_joints) rad or mm. stroke: (n,) index of the stroke being drawn, or TRAVELLING. sample: (n,) where
+    in the trajectory that is, a fractional index; on the way to the drawing where it begins, on the way back its end.
     approach, retreat: how many set points come before and after those of the drawing.
     """
 
     positions: FloatArray
     stroke: IntArray
+    sample: FloatArray
     rate_hz: float
     approach: int
     retreat: int
@@ -45,30 +47,38 @@ class Programme:
 
 
 def make_programme(arm: Arm, set_points: FloatArray, stroke: IntArray, rate_hz: float, *, from_stroke: int = 0,
-                   park: FloatArray | None = None) -> Programme:
+                   from_sample: int | None = None, park: FloatArray | None = None) -> Programme:
     """The programme of `set_points` (n_samples, n_joints; rad or mm) and their `stroke` (n_samples,) labels.
 
     from_stroke: the first to be drawn; the drawing is joined at the highest sample of the hop before it, from rest.
+    from_sample: if not None the drawing is joined there, in the midst of that stroke: the pen comes straight down.
     park: where the arm comes from and goes to; if None it is where the file begins, lifted if the pen is down there.
     Errors: UsageError (no such stroke), PlanError (no way from or to the park pose).
     """
     refine = math.ceil(_LEAST_RATE_HZ / rate_hz)
     body, labels, rate_hz = *_refined(set_points, stroke, refine), rate_hz * refine
-    first = _start_of(arm, set_points, stroke, from_stroke) * refine
-    rest = body[first]
+    first = (_start_of(arm, set_points, stroke, from_stroke) if from_sample is None else from_sample) * refine
+    rest, sample = body[first], np.arange(len(body)) / refine
+    descent = rest[None] if from_sample is None else lower(arm, rest, rate_hz)
     if first:
         joining = set_off(arm, body, first, rate_hz)
         labels = np.concatenate((labels[[first, *np.floor(joining.at).astype(np.int64)]], labels[joining.end + 1:]))
         body = np.concatenate((rest[None], joining.points, body[joining.end + 1:]))
+        sample = np.concatenate(([first / refine], joining.at / refine, sample[joining.end + 1:]))
     if park is None:
-        lifted = lift(arm, set_points[0], rate_hz) if _is_low(arm, set_points[0]) else set_points[:1]
-        park = np.concatenate((set_points[:1], lifted))[-1]
-    there, back = gentle_move(arm, park, rest, rate_hz), gentle_move(arm, body[-1], park, rate_hz)
-    if len(there):  # which ends where the body begins
-        there = np.concatenate((park[None], there[:-1]))
+        park = _park(arm, set_points, rate_hz)
+    there, back = gentle_move(arm, park, descent[0], rate_hz), gentle_move(arm, body[-1], park, rate_hz)
+    there = np.concatenate((park[None], there, descent[1:]))[:-1]  # it ends where the body begins
+    ends = len(there), len(back)
     return Programme(
-        np.concatenate((there, body, back)),
-        np.pad(labels, (len(there), len(back)), constant_values=TRAVELLING), rate_hz, len(there), len(back))
+        np.concatenate((there, body, back)), np.pad(labels, ends, constant_values=TRAVELLING),
+        np.pad(sample, ends, mode="edge"), rate_hz, *ends)
+
+
+def parking(arm: Arm, set_points: FloatArray, rate_hz: float, park: FloatArray | None = None) -> Programme:
+    """A programme that draws nothing any more: where `make_programme` would park, and that is all."""
+    where = _park(arm, set_points, rate_hz) if park is None else park
+    return Programme(where[None], np.array([TRAVELLING]), np.array([len(set_points) - 1.0]), rate_hz, 0, 0)
 
 
 def _refined(set_points: FloatArray, stroke: IntArray, refine: int) -> tuple[FloatArray, IntArray]:
@@ -90,6 +100,13 @@ def _start_of(arm: Arm, set_points: FloatArray, stroke: IntArray, index: int) ->
     hop = np.arange(int(earlier[-1]) + 1 if len(earlier) else 0, begins + 1)
     heights_mm = link_nodes_mm(arm, set_points[hop])[:, -1, 2]
     return int(hop[np.argmax(heights_mm)])
+
+
+def _park(arm: Arm, set_points: FloatArray, rate_hz: float) -> FloatArray:
+    """(n_joints,) where the file begins, lifted if the pen is down there."""
+    lifted = lift(arm, set_points[0], rate_hz) if _is_low(arm, set_points[0]) else set_points[:1]
+    park: FloatArray = np.concatenate((set_points[:1], lifted))[-1]
+    return park
 
 
 def _is_low(arm: Arm, posture: FloatArray) -> bool:

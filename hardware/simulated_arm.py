@@ -92,6 +92,9 @@ class SimulatedArm:
     def connected(self) -> bool:
         return self._target is not None
 
+    def open(self) -> None:
+        """There is no line."""
+
     def connect(self, pose: FloatArray) -> None:
         self._refuse_beyond_stops(pose)
         self._target = pose.copy()

@@ -24,6 +24,7 @@ _ALLOWANCE = 1.02
 _MARGIN = 1.05
 _LONGEST_LIFT_S = 1.0
 """No lift is slowed down beyond this: what asks for more is a bend where a joint runs into its limit."""
+_LOWERED_SLOWER = 3
 _LIFTED_MM = 0.01
 _DEGREE = 6
 """Of the polynomial in height through the postures of a lift, smooth at any rate."""
@@ -107,6 +108,13 @@ def lift(arm: Arm, start: FloatArray, rate_hz: float, to_mm: float | None = None
         n = math.ceil(n * max(slower, _MARGIN))
         points = at(n)
     return np.clip(points, arm.minimum, arm.maximum)
+
+
+def lower(arm: Arm, goal: FloatArray, rate_hz: float) -> FloatArray:
+    """Set points (n, n_joints) straight down to `goal`, at a third of the pace of the lift that they undo; the first
+    is where the lift ends."""
+    points: FloatArray = np.concatenate((goal[None], lift(arm, goal, rate_hz * _LOWERED_SLOWER)))[::-1]
+    return points
 
 
 def slow_down(arm: Arm, points: FloatArray, period_s: float) -> float:

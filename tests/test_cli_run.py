@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hardware.journal import digest, journal_path
 from planner.checking.likeness import likeness
 from planner.cli import main
 from planner.drawing.flatten import flatten_all
@@ -297,18 +298,37 @@ def test_nothing_is_said_of_servos_before_the_port_is_open(taps_csv: Path, capsy
 def test_where_all_is_drawn_nothing_is_left_to_resume(
         taps_csv: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """Stopped on the way back to the park pose."""
-    from planner.cli.resuming import RunJournal
+    from planner.cli.keeping import Keeping
 
-    def stop(journal: RunJournal, stroke: int) -> None:
-        told(journal, stroke)
+    def stop(keeping: Keeping, stroke: int) -> None:
+        told(keeping, stroke)
         if stroke == 9:
             signal.raise_signal(signal.SIGTERM)
 
-    told = RunJournal.finished
-    monkeypatch.setattr(RunJournal, "finished", stop)
+    told = Keeping.finished
+    monkeypatch.setattr(Keeping, "finished", stop)
     assert main(["run", str(taps_csv), "--fast"]) == 130
     assert "all strokes are drawn; there is nothing left for --resume" in capsys.readouterr().err
     assert main(["run", str(taps_csv), "--fast", "--resume"]) == 0
+    assert "is drawn to its end" in capsys.readouterr().out
+
+
+@pytest.mark.skipif(not Path("/dev/ptmx").exists(), reason="needs pseudo-terminals")
+def test_where_all_is_drawn_a_real_arm_is_only_parked(taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its pen may still be on the paper."""
+    journal = journal_path(taps_csv, simulated=False)
+    journal.write_text(json.dumps({"journal": 2, "sha256": digest(taps_csv), "arm": "drawing_arm", "driver": "ssc32",
+                                   "next_stroke": 10}) + "\n")
+    model = Ssc32Model()
+    with pty_line(model) as far:
+        assert main(["run", str(taps_csv), "--driver", "ssc32", "--port", far.name, "--resume"]) == 0
+    told = capsys.readouterr()
+    assert "the earlier run ended after all strokes were drawn" in told.err
+    assert "the arm is parked" in told.out
+    whole = [targets for targets, _ in model.moves if len(targets) == 5]
+    assert len(whole) == 1
+    assert _entries(journal)["ended"] == "complete"
+    assert main(["run", str(taps_csv), "--driver", "ssc32", "--port", "/dev/none", "--resume"]) == 0
     assert "is drawn to its end" in capsys.readouterr().out
 
 

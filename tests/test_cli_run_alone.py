@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import subprocess
@@ -127,6 +128,17 @@ def test_many_that_want_it_at_once_get_it_one_at_a_time(tmp_path: Path) -> None:
         thread.join()
     assert max(most) == 1
     assert len(most) + len(refused) == 200
+
+
+def test_a_full_disk_keeps_nobody_from_a_claim(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(descriptor: int, content: bytes) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    path = tmp_path / "lock"
+    monkeypatch.setattr(os, "write", full)
+    with claim(path, "drawing"), pytest.raises(Claimed, match="has just begun"), claim(path, "drawing"):
+        pass
+    assert not path.exists()
 
 
 def test_where_no_claim_can_be_made_there_is_none(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import socket
 import subprocess
@@ -11,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from hardware.journal import journal_path, read_journal
+from hardware.journal import digest, journal_path
+from hardware.journal_entry import read_journal
 from planner.cli import main
 from tests.hardware.controllers.ssc32 import Ssc32Model
 from tests.test_cli_run import ROOT, RUN, _Terminal
@@ -110,3 +112,25 @@ def test_a_request_to_terminate_is_heard_while_a_line_takes_nothing(
     assert time.monotonic() - asked_s < 20
     assert process.returncode == 4
     assert "plan: error: " + url in err
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_run_that_still_asks_how_far_an_earlier_one_came_ends_at_once(csv: Path, number: signal.Signals) -> None:
+    """Nothing moves yet; the journal stays as it was, and port and trajectory are free again."""
+    journal = journal_path(csv, simulated=False)
+    kept = json.dumps({"journal": 2, "sha256": digest(csv), "arm": "drawing_arm", "driver": "native",
+                       "next_stroke": 0}) + "\n"
+    journal.write_text(kept)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        url = f"socket://127.0.0.1:{server.getsockname()[1]}"
+        process = subprocess.Popen([*RUN, str(csv), "--driver", "native", "--port", url, "--resume"], cwd=ROOT,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        server.settimeout(60)
+        far, _ = server.accept()
+        with far:
+            assert far.recv(64)  # the question, which nobody answers
+            process.send_signal(number)
+            out, err = process.communicate(timeout=60)
+    assert (process.returncode, out, err) == (130, "", "plan: interrupted\n")
+    assert journal.read_text() == kept
+    assert sorted(path.name for path in csv.parent.iterdir()) == ["traj.csv", "traj.csv.journal"]

@@ -10,13 +10,15 @@ from enum import IntEnum
 from hardware.codecs import cobs
 from hardware.codecs.crc import crc16
 
-PROTOCOL_VERSION = 1
+PROTOCOL_VERSION = 2
 BAUD = 250_000
 UNITS_PER_US = 16
 """Pulses on the line are in sixteenths of a microsecond."""
 UNITS_PER_S = 10_000
 """Durations on the line are in tenths of a millisecond."""
 LONGEST_KEY_S = 0xFFFF / UNITS_PER_S
+COUNTED = 1 << 32
+"""Key frames are counted modulo this."""
 
 
 class Order(IntEnum):
@@ -31,6 +33,7 @@ class Order(IntEnum):
     CLEAR = 0x07
     PING = 0x08
     OFF = 0x09
+    RECALL = 0x0A
 
 
 class State(IntEnum):
@@ -104,8 +107,8 @@ class Status:
 
     order, result: sequence number of the last order and what became of it. session: of the last HELLO, 0 since a
     reset. expected: sequence number of the key frame to come, so all before it have arrived. free: key frames that
-    there is room for. gap: since the last Status a frame was damaged or missing. reached: key frames played in this
-    session, modulo 65536.
+    there is room for. gap: since the last Status a frame was damaged or missing. reached: key frames played of those
+    that the controller remembers, modulo COUNTED.
     """
 
     order: int
@@ -119,9 +122,23 @@ class Status:
     reached: int
 
 
-_KEY, _END, _INFO, _STATUS = 0x10, 0x11, 0x81, 0x82
+@dataclass(frozen=True, slots=True)
+class Record:
+    """What the controller remembers of a run, asked before a HELLO begins another. session: 0 if it remembers none.
+    reached: key frames played in it, modulo COUNTED; state: what the controller is at now, so that more may come."""
+
+    order: int
+    session: int
+    reached: int
+    state: State
+
+
+Message = Info | Status | Record
+
+_KEY, _END, _INFO, _STATUS, _RECORD = 0x10, 0x11, 0x81, 0x82, 0x83
 _INFO_PAYLOAD = struct.Struct("<HBBBBHH")
-_STATUS_PAYLOAD = struct.Struct("<HBBBBBBH")
+_STATUS_PAYLOAD = struct.Struct("<HBBBBBBI")
+_RECORD_PAYLOAD = struct.Struct("<HIB")
 _GAP = 0x01
 
 
@@ -165,7 +182,7 @@ class Reader:
         self.damaged = 0
         self._rest = b""
 
-    def feed(self, received: bytes) -> list[Info | Status]:
+    def feed(self, received: bytes) -> list[Message]:
         """The messages that `received` completes."""
         *frames, self._rest = (self._rest + received).split(b"\0")
         self._rest = self._rest[-256:]  # without a delimiter in so many bytes it is noise
@@ -179,7 +196,7 @@ class Reader:
         return messages
 
 
-def _decode(stuffed: bytes) -> Info | Status | None:
+def _decode(stuffed: bytes) -> Message | None:
     try:
         body = cobs.unstuff(stuffed)
     except cobs.NotStuffed:
@@ -196,6 +213,9 @@ def _decode(stuffed: bytes) -> Info | Status | None:
             session, state, fault, result, expected, free, flags, reached = _STATUS_PAYLOAD.unpack(payload)
             return Status(sequence, session, State(state), Fault(fault), Result(result), expected, free,
                           bool(flags & _GAP), reached)
+        if kind == _RECORD:
+            session, reached, state = _RECORD_PAYLOAD.unpack(payload)
+            return Record(sequence, session, reached, State(state))
     except (struct.error, ValueError):
         return None  # of another version of the protocol, or noise with a CRC that fits
     return None

@@ -57,3 +57,9 @@ void put_word(uint8_t *bytes, uint16_t word)
     bytes[0] = (uint8_t)word;
     bytes[1] = (uint8_t)(word >> 8);
 }
+
+void put_long(uint8_t *bytes, uint32_t number)
+{
+    put_word(bytes, (uint16_t)number);
+    put_word(bytes + 2, (uint16_t)(number >> 16));
+}

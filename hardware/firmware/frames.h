@@ -18,5 +18,6 @@ uint8_t frame_encode(uint8_t *body, uint8_t n, uint8_t *frame);
 /* Words are little-endian. */
 uint16_t get_word(const uint8_t *bytes);
 void put_word(uint8_t *bytes, uint16_t word);
+void put_long(uint8_t *bytes, uint32_t number);
 
 #endif

@@ -7,6 +7,7 @@
 #include "protocol.h"
 #include "pulses.h"
 #include "queue.h"
+#include "record.h"
 
 struct channel {
     uint16_t shortest, longest, park; /* 1/16 us */
@@ -29,9 +30,10 @@ static uint16_t session;               /* 0 from a reset until a HELLO */
 static uint8_t order_type, order_seq;  /* the last order, so that it is done once however often it comes */
 static enum result order_result;
 static uint8_t expected; /* sequence number of the key frame to come */
-static uint16_t reached; /* key frames played to their end in this session */
 static bool ended;       /* what is queued is the end of the motion */
-static bool gap, tell_info, tell_status;
+static uint8_t reached_in[MAX_CHANNELS + 1]; /* key frames whose end was reached in each of the last slots */
+static uint8_t slot_at;
+static bool gap, tell_info, tell_record, tell_status;
 
 static void divide(uint8_t count)
 {
@@ -44,6 +46,7 @@ static void divide(uint8_t count)
 void machine_start(void)
 {
     divide(DEFAULT_CHANNELS);
+    record_start();
     tell_status = true; /* with session 0: whoever was playing learns of the reset */
 }
 
@@ -53,10 +56,11 @@ static void enter(enum state next)
     tell_status = true;
 }
 
-/* Stand here and forget what is queued. */
+/* Stand where the pulses are, and forget what is queued, and what was reached and no servo will be told of. */
 static void flush(void)
 {
     playhead_place(pose, channels);
+    memset(reached_in, 0, sizeof reached_in);
     ended = false;
 }
 
@@ -81,7 +85,7 @@ static enum result hello(const uint8_t *payload, uint8_t n)
         return REFUSED_LENGTH;
     if (session != get_word(payload)) { /* another host, or the same started anew: nothing of before counts */
         session = get_word(payload);
-        reached = 0;
+        record_begin(session);
         if (state == STATE_FAULT)
             expected = 0; /* and stays one until it is cleared */
         else
@@ -194,7 +198,7 @@ static enum result obey(uint8_t type, const uint8_t *payload, uint8_t n)
     case ARM:
         return arm(payload, n);
     }
-    if (type > OFF)
+    if (type > RECALL)
         return REFUSED_TYPE;
     if (n != 0)
         return REFUSED_LENGTH;
@@ -211,6 +215,9 @@ static enum result obey(uint8_t type, const uint8_t *payload, uint8_t n)
         return DONE;
     case OFF:
         return off();
+    case RECALL:
+        tell_record = true;
+        return DONE;
     case PING:
         return DONE;
     }
@@ -254,9 +261,9 @@ void machine_receive(const uint8_t *body, uint8_t n)
         sequenced(type, seq, body + 2, n - 2);
         return;
     }
-    /* An order that comes again because its answer got lost is not obeyed again. HELLO, STOP and CLEAR are: they
-     * lead to the same however often, and have to work whatever went before. */
-    if (type != HELLO && type != STOP && type != CLEAR && type == order_type && seq == order_seq)
+    /* An order that comes again because its answer got lost is not obeyed again. HELLO, STOP, CLEAR and RECALL are:
+     * they lead to the same however often, and have to work whatever went before. */
+    if (type != HELLO && type != STOP && type != CLEAR && type != RECALL && type == order_type && seq == order_seq)
         return;
     order_result = obey(type, body + 2, n - 2);
     order_type = type;
@@ -280,15 +287,24 @@ static void attach(void)
     }
 }
 
+/* A key frame counts as played once every servo has had a pulse, and had it whole, since its end was reached: that is
+ * where the arm stands if it is stopped or reset now. */
+static void count_played(void)
+{
+    slot_at = slot_at < channels ? slot_at + 1 : 0;
+    uint8_t more = reached_in[slot_at];
+    reached_in[slot_at] = 0;
+    if (more) {
+        record_played(more);
+        tell_status = true;
+    }
+}
+
 static void play(void)
 {
     /* Where the host has fallen silent it brakes along what is left, and does not run into the end of it. */
     bool go = state == STATE_RUN && (ended || playhead_left() > RESERVE_TICKS);
-    uint8_t more = playhead_move(slot, go);
-    if (more) {
-        reached += more;
-        tell_status = true;
-    }
+    reached_in[slot_at] = playhead_move(slot, go);
     if (state != STATE_RUN)
         return;
     if (queue_is_empty() && ended)
@@ -307,6 +323,7 @@ void machine_slot(uint8_t channel)
             return;
         }
     }
+    count_played();
     if (state == STATE_ARMING)
         attach();
     if (moving)
@@ -319,7 +336,7 @@ void machine_slot(uint8_t channel)
 
 bool machine_has_answer(void)
 {
-    return tell_info || tell_status;
+    return tell_info || tell_record || tell_status;
 }
 
 uint8_t machine_answer(uint8_t *body)
@@ -339,6 +356,14 @@ uint8_t machine_answer(uint8_t *body)
             put_word(body + 12 + 2 * i, pose[i]);
         return 12 + 2 * attached;
     }
+    if (tell_record) {
+        tell_record = false;
+        body[0] = RECORD;
+        put_word(body + 2, record_session());
+        put_long(body + 4, record_keys());
+        body[8] = state;
+        return 9;
+    }
     body[0] = STATUS;
     body[4] = state;
     body[5] = fault;
@@ -346,7 +371,7 @@ uint8_t machine_answer(uint8_t *body)
     body[7] = expected;
     body[8] = queue_free();
     body[9] = gap ? FLAG_GAP : 0;
-    put_word(body + 10, reached);
+    put_long(body + 10, record_keys());
     tell_status = gap = false;
-    return 12;
+    return 14;
 }

@@ -2,8 +2,8 @@
 #ifndef PROTOCOL_H
 #define PROTOCOL_H
 
-#define PROTOCOL_VERSION 1
-#define FIRMWARE_MAJOR 1
+#define PROTOCOL_VERSION 2
+#define FIRMWARE_MAJOR 2
 #define FIRMWARE_MINOR 0
 
 #define BAUD 250000UL
@@ -11,12 +11,12 @@
 /* Frames to the controller: orders, which by-pass the queue, and the two that are sequenced. */
 enum {
     HELLO = 0x01, CONFIG = 0x02, ARM = 0x03, START = 0x04, HOLD = 0x05,
-    STOP = 0x06, CLEAR = 0x07, PING = 0x08, OFF = 0x09,
+    STOP = 0x06, CLEAR = 0x07, PING = 0x08, OFF = 0x09, RECALL = 0x0A,
     KEY = 0x10, END = 0x11
 };
 
 /* Frames to the host. */
-enum { INFO = 0x81, STATUS = 0x82 };
+enum { INFO = 0x81, STATUS = 0x82, RECORD = 0x83 };
 
 enum state { STATE_OFF, STATE_ARMING, STATE_READY, STATE_RUN, STATE_HOLD, STATE_UNDERRUN, STATE_FAULT };
 

@@ -18,7 +18,7 @@ static const uint8_t mask_of[MAX_CHANNELS] = {
 static volatile uint16_t widths[MAX_CHANNELS]; /* ticks; 0: no pulse */
 static volatile uint8_t channels = DEFAULT_CHANNELS;
 static volatile uint16_t slot = PULSE_PERIOD_TICKS / DEFAULT_CHANNELS;
-static volatile uint8_t channel; /* whose slot begins at the next rising edge, or whose pulse is up */
+static volatile uint8_t channel; /* whose slot begins next */
 static volatile uint8_t slots_begun;
 
 static uint8_t slots_seen, slot_seen; /* by the main loop: how many, and whose the last one was */
@@ -50,11 +50,13 @@ void pulses_divide(uint8_t count)
 ISR(TIMER1_COMPA_vect)
 {
     static uint16_t edge = PULSE_PERIOD_TICKS / DEFAULT_CHANNELS; /* when it is due */
-    static uint16_t begun;                                        /* when the slot of the pulse began */
+    static uint16_t next_slot;                                    /* when that of the pulse ends */
+    static uint8_t raised;
     static bool up;
 
-    /* All is decided before the wait, so that the pin changes equally long after every tick. */
-    uint8_t now = channel, mask = mask_of[now];
+    /* All is decided before the wait, so that the pin changes equally long after every tick. What is up comes down,
+     * at its time, and its slot ends where it was to: channels may have been divided anew since it went up. */
+    uint8_t now = up ? raised : channel, mask = mask_of[now];
     volatile uint8_t *port = &PORT_OF(now);
     uint16_t width = widths[now];
     uint8_t level = up || !width ? *port & (uint8_t)~mask : *port | mask;
@@ -66,17 +68,16 @@ ISR(TIMER1_COMPA_vect)
         loop_until_bit_is_set(TIFR1, OCF1B);
     *port = level;
 
-    if (!up) {
-        begun = edge;
-        slots_begun++;
-    }
-    if (!up && width) {
-        up = true;
-        edge = begun + width;
-    } else {
+    if (up) {
         up = false;
-        edge = begun + slot;
+        edge = next_slot;
+    } else {
+        slots_begun++;
+        next_slot = edge + slot;
+        raised = now;
         channel = now + 1 < channels ? now + 1 : 0;
+        up = width != 0;
+        edge = up ? edge + width : next_slot;
     }
     OCR1A = edge - LEAD_TICKS;
 }

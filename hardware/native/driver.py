@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -11,7 +12,8 @@ import numpy as np
 
 from hardware.clock import Clock
 from hardware.codecs import native
-from hardware.codecs.native import End, Fault, Info, Key, Order, Result, State, Status
+from hardware.codecs.native import End, Fault, Info, Key, Order, Record, Result, State, Status
+from hardware.driver import Tally
 from hardware.native.link import Link
 from planner.arrays import FloatArray
 from planner.counted import counted
@@ -69,6 +71,7 @@ class NativeDriver:
         self._reader = native.Reader()
         self._status: Status | None = None
         self._info: Info | None = None
+        self._records: list[Record] = []
         self._session = 0
         self._order = 0
         self._asked_s = 0.0
@@ -83,8 +86,25 @@ class NativeDriver:
         self._ahead: deque[tuple[int, float]] = deque()  # for each key not reached: set points by its end, duration
         self._merging: tuple[tuple[int, ...], float] | None = None
 
+    def open(self) -> None:
+        if self._line is None:
+            self._line = self._open_line()
+
+    def recall(self, earlier: Tally | None) -> int | None:
+        self.open()
+        self._records.clear()
+        self._ask(lambda: native.order(Order.RECALL, self._order),
+                  lambda: bool(self._records) and self._records[-1].state is not State.RUN)
+        record = self._records[-1]
+        if earlier is None or record.session != earlier.run:
+            return None
+        return (record.reached - earlier.first) % native.COUNTED * earlier.each
+
+    def tally(self, period_s: float) -> Tally:
+        return Tally(self._session, self._keys_reached, math.ceil(self._shortest_key_s / period_s))
+
     def connect(self, pose: FloatArray) -> None:
-        self._line = self._open_line()
+        self.open()
         self._session = int.from_bytes(os.urandom(2), "little") % 0xFFFF + 1
         self._introduce()
         self._understand()
@@ -155,10 +175,15 @@ class NativeDriver:
     def _introduce(self) -> None:
         self._status = self._info = None
         self._order = self._session % 256
+        self._ask(lambda: native.hello(self._order, self._session),
+                  lambda: self._info is not None and self._status is not None)
+
+    def _ask(self, encode: Callable[[], bytes], answered: Callable[[], bool]) -> None:
+        """Ask a controller that may be starting, or be in the midst of anything, until it has answered."""
         for attempt in range(_BOOT_ATTEMPTS):
             # A delimiter first: whatever is stuck in the controller's buffer ends here.
-            self._write((b"\0" if attempt == 0 else b"") + native.hello(self._order, self._session))
-            if self._listen(_ASK_S, lambda: self._info is not None and self._status is not None):
+            self._write((b"\0" if attempt == 0 else b"") + encode())
+            if self._listen(_ASK_S, answered):
                 return
         raise HardwareError("the controller does not answer: is it powered, is this its port, and has it the"
                             " project's firmware (hardware/firmware/README.md)?")
@@ -297,7 +322,9 @@ class NativeDriver:
 
     def _read(self) -> None:
         for message in self._reader.feed(self._connected().read(_POLL_BYTES, _POLL_S)):
-            if message.session == self._session:
+            if isinstance(message, Record):
+                self._records.append(message)
+            elif self._session and message.session == self._session:
                 if isinstance(message, Info):
                     self._info = message
                 else:
@@ -311,9 +338,9 @@ class NativeDriver:
         self._status = status
         self._unanswered = 0
         self._link.received(status, self._clock.now_s())
-        for _ in range(min((status.reached - self._keys_reached) % 0x10000, len(self._ahead))):
+        for _ in range(min((status.reached - self._keys_reached) % native.COUNTED, len(self._ahead))):
             self._done, _ = self._ahead.popleft()
-            self._keys_reached = (self._keys_reached + 1) % 0x10000
+            self._keys_reached = (self._keys_reached + 1) % native.COUNTED
         if status.state is State.UNDERRUN and before is not None and before.state is not State.UNDERRUN:
             self._underruns += 1
         if status.state is State.FAULT and before is not None and before.state is not State.FAULT and not self._stopped:

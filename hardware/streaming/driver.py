@@ -32,12 +32,17 @@ class StreamingDriver:
         self._reached_s = self._free_s = -math.inf
         self._sent = self._bytes = 0
 
+    def open(self) -> None:
+        if self._port is None:
+            self._port = self._line.open(self._controller.usual_baud)
+
     def connect(self, pose: FloatArray) -> None:
         values = self._controller.calibration.to_servos(pose)
-        self._port = self._line.open(self._controller.usual_baud)
-        self._port.discard_input()
-        self._come_from(self._controller.attach(self._port, values, self._clock), pose)
-        self._controller.confirm(self._port, values, self._clock)
+        self.open()
+        port = self._connected()
+        port.discard_input()
+        self._come_from(self._controller.attach(port, values, self._clock), pose)
+        self._controller.confirm(port, values, self._clock)
 
     def send(self, positions: FloatArray, duration_s: float) -> None:
         port = self._connected()

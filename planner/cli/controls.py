@@ -7,7 +7,7 @@ import re
 import select
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from types import FrameType
 
@@ -101,14 +101,34 @@ class Controls:
 def controls() -> Iterator[Controls]:
     """Keys and signals become requests until this ends."""
     wishes = Controls()
-    handlers = {signal.SIGINT: wishes.interrupt, signal.SIGTERM: wishes.interrupt}
-    hang_up = getattr(signal, "SIGHUP", None)
-    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:  # which nohup asks for
-        handlers[hang_up] = wishes.hang_up
-    before = {number: signal.signal(number, handler) for number, handler in handlers.items()}
+    with (_handling({"SIGINT": wishes.interrupt, "SIGTERM": wishes.interrupt, "SIGHUP": wishes.hang_up}),
+          wishes.keyboard()):
+        yield wishes
+
+
+@contextmanager
+def breaking_off() -> Iterator[None]:
+    """A request to terminate and a terminal that closes end the program as Ctrl-C does, until this ends: while nothing
+    moves, what is open only has to be closed."""
+    with _handling({"SIGTERM": _break_off, "SIGHUP": _break_off}):
+        yield
+
+
+def _break_off(number: int, frame: FrameType | None) -> None:
+    raise KeyboardInterrupt
+
+
+@contextmanager
+def _handling(handlers: Mapping[str, Callable[[int, FrameType | None], None]]) -> Iterator[None]:
+    """Signals by name, those that this system has, go to their handlers until this ends."""
+    before = {}
     try:
-        with wishes.keyboard():
-            yield wishes
+        for name, handler in handlers.items():
+            number = getattr(signal, name, None)
+            if number is None or (name == "SIGHUP" and signal.getsignal(number) is signal.SIG_IGN):  # nohup asks for it
+                continue
+            before[number] = signal.signal(number, handler)
+        yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        for number, earlier in before.items():
+            signal.signal(number, earlier)

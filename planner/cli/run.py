@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from contextlib import nullcontext
+from contextlib import closing, nullcontext
 from typing import TYPE_CHECKING
 
 from planner.cli.output import check_target
@@ -25,13 +25,15 @@ def run(arguments: list[str]) -> int:
     options = parser().parse_args(arguments)
     refuse_contradictions(options)
 
-    from hardware.drivers import calibration_of
+    from hardware.drivers import SIMULATORS, calibration_of
     from hardware.preflight import servo_values, set_points
-    from hardware.programme import make_programme
+    from hardware.programme import make_programme, parking
     from planner.arms.arm_file import load_arm
-    from planner.cli.resuming import RunJournal, one_at_a_time, refuse_unkept, where_to_begin
+    from planner.cli.controls import breaking_off
+    from planner.cli.one_run import one_at_a_time, refuse_unkept
+    from planner.cli.resuming import where_to_begin
     from planner.cli.run_pictures import check_pictures, save_pictures
-    from planner.cli.run_playing import play_out
+    from planner.cli.run_playing import play_out, set_up
     from planner.trajectory import read_trajectory
 
     check_pictures(options.picture, options.trajectory)
@@ -45,22 +47,26 @@ def run(arguments: list[str]) -> int:
     calibration = calibration_of(options.driver, arm)
     if calibration is not None:
         servo_values(calibration, positions, trajectory, options.trajectory)
-    last_stroke = int(trajectory.stroke.max())
-    with one_at_a_time(options) if not options.dry_run else nullcontext():
-        beginning = where_to_begin(options, arm, last_stroke)
-        if options.resume and (beginning.complete or beginning.next_stroke > last_stroke):
+    last_stroke, rate_hz = int(trajectory.stroke.max()), trajectory.rate_hz * options.speed_factor
+    rig = set_up(options, arm)
+    with breaking_off(), nullcontext() if options.dry_run else one_at_a_time(options), closing(rig.driver):
+        beginning = where_to_begin(options, arm, trajectory.stroke, None if options.dry_run else rig.driver)
+        all_drawn = options.resume and beginning.next_stroke > last_stroke
+        if (options.resume and beginning.complete) or (all_drawn and options.driver in SIMULATORS):
             print_lines([f"{options.trajectory} is drawn to its end; without --resume it is drawn again"])
             return 0
-        programme = make_programme(arm, positions, trajectory.stroke, trajectory.rate_hz * options.speed_factor,
-                                   from_stroke=beginning.next_stroke, park=arm.park)
+        programme = parking(arm, positions, rate_hz, arm.park) if all_drawn else make_programme(
+            arm, positions, trajectory.stroke, rate_hz, from_stroke=beginning.next_stroke,
+            from_sample=beginning.sample, park=arm.park)
         told = _told_to_servos(calibration, programme, arm)
         if options.dry_run:
             print_lines(_verdict(options, arm, programme, calibration, told))
             return 0
-        played, recording = play_out(options, arm, programme, RunJournal(options, beginning, last_stroke), last_stroke)
+        played = play_out(options, arm, programme, rig, beginning, last_stroke)
     lines = played.lines()
-    if recording is not None and options.picture:
-        lines += save_pictures(options.picture, trajectory, arm, positions, recording.positions, beginning.next_stroke)
+    if rig.recording is not None and options.picture:
+        lines += save_pictures(options.picture, trajectory, arm, positions, rig.recording().positions,
+                               beginning.next_stroke)
     if not options.quiet:
         print_summary(lines, *options.picture)
     return 0 if played.complete else EXIT_STOPPED

@@ -46,7 +46,8 @@ def parser() -> Parser:
                         help="play slower by this factor, 0.01 to 1 (default: 1)")
     options.add_argument("--from-stroke", type=int, metavar="K", help="leave out the strokes before K, counted from 0")
     options.add_argument("--resume", action="store_true",
-                        help="go on after the last stroke that an earlier run finished, from its journal")
+                        help="go on where an earlier run is known to have come to, from its journal: at the stroke "
+                             "that it did not finish, on native in its midst")
     options.add_argument("--dry-run", action="store_true",
                         help="examine everything and say what would be sent, but send nothing")
     options.add_argument("--fast", action="store_true", help="sim, mujoco: do not wait for the time of each sample")

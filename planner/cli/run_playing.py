@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from hardware.clock import Clock, InstantClock, WallClock
 from hardware.driver import Driver
 from hardware.drivers import MUJOCO, SIMULATED, TELL_WHERE_THEY_STAND, calibration_of, make_driver
 from hardware.gentle_move import in_words
+from hardware.journal_entry import Entry
 from hardware.player import play
 from hardware.playing import Played, Progress
 from hardware.port import Line
@@ -17,7 +19,7 @@ from hardware.programme import Programme
 from hardware.simulated_arm import Recording, Servos, SimulatedArm
 from planner.arms.arm import Arm
 from planner.cli.controls import KEYS, controls
-from planner.cli.resuming import RunJournal
+from planner.cli.keeping import Keeping
 from planner.cli.terminal import Show, print_note, print_warnings, progress
 from planner.errors import HardwareError
 
@@ -27,35 +29,52 @@ if TYPE_CHECKING:
 _REPORTS_A_SECOND = 10
 
 
-def play_out(options: argparse.Namespace, arm: Arm, programme: Programme, journal: RunJournal,
-          last_stroke: int) -> tuple[Played, Recording | None]:
-    """What became of the programme, and what a simulated arm did. Errors: HardwareError, OutputError."""
+@dataclass(frozen=True, slots=True)
+class Rig:
+    """What a run plays on, and the clock that it goes by. recording: of a simulated arm, None of a real one."""
+
+    driver: Driver
+    clock: Clock
+    recording: Callable[[], Recording] | None
+
+
+def set_up(options: argparse.Namespace, arm: Arm) -> Rig:
+    """Nothing is opened yet. Errors: ArmFileError where the arm file does not say how joints are moved."""
     clock = InstantClock() if options.fast else WallClock()
     simulated = _simulated(options, arm, clock)
+    if simulated is None:
+        return Rig(make_driver(options.driver, arm, Line(options.port or "", options.baud), clock), clock, None)
+    return Rig(simulated, clock, lambda: simulated.recording)
+
+
+def play_out(options: argparse.Namespace, arm: Arm, programme: Programme, rig: Rig, beginning: Entry,
+             last_stroke: int) -> Played:
+    """What became of the programme. Errors: HardwareError, OutputError."""
+    keeping = Keeping(options, beginning, last_stroke, rig.driver, programme.rate_hz, rig.clock)
     ended, complete = "broken off", False
     with progress(quiet=options.quiet, single=True) as show:
         try:
             with controls() as wishes:
-                def opened() -> None:
-                    if not options.quiet:
-                        print_note(_announced(options, programme, arm))
-
                 def connected() -> None:
                     if wishes.has_keys and not options.quiet:
                         print_note(KEYS)
-                    journal.open()
+                    keeping.connected()
 
-                driver = simulated or make_driver(options.driver, arm, Line(options.port, options.baud, opened), clock)
-                played = play(programme, arm, driver, clock, request=wishes.request,
-                              report=_reporting(show, driver, programme.rate_hz, last_stroke),
-                              connected=connected, sent=journal.sent, finished=journal.finished)
+                rig.driver.open()
+                if not options.quiet and options.port:
+                    print_note(_announced(options, programme, arm))
+                keeping.opened()
+                played = play(programme, arm, rig.driver, rig.clock, request=wishes.request,
+                              report=_reporting(show, rig.driver, programme.rate_hz, last_stroke),
+                              connected=connected, sent=keeping.sent, finished=keeping.finished,
+                              onward=keeping.onward, reached=keeping.reached)
             ended, complete = played.end.value, played.complete
         except HardwareError as error:
             ended = str(error)
             raise
         finally:  # before the last words, which a terminal that is stuck may never take
-            journal.close(ended, complete=complete)
-    return played, simulated.recording if simulated else None
+            keeping.close(ended, complete=complete)
+    return played
 
 
 def _simulated(options: argparse.Namespace, arm: Arm, clock: Clock) -> SimulatedArm | MujocoArm | None:

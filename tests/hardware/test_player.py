@@ -8,11 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hardware.clock import InstantClock
+from hardware.course import piece, sample_after
 from hardware.player import play
 from hardware.playing import End, Played, Progress, Request
 from hardware.programme import Programme, make_programme
 from hardware.simulated_arm import Recording, SimulatedArm
-from hardware.stopping import slow_down
+from hardware.stopping import interpolate, slow_down
 from hardware.tip import link_nodes_mm
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
@@ -75,7 +76,7 @@ class Queueing(SimulatedArm):
 
 
 def _resting(n: int, rate_hz: float) -> Programme:
-    return Programme(np.tile(REST, (n, 1)), np.full(n, TRAVELLING), rate_hz, 0, 0)
+    return Programme(np.tile(REST, (n, 1)), np.full(n, TRAVELLING), np.zeros(n), rate_hz, 0, 0)
 
 
 @pytest.fixture(scope="session")
@@ -263,3 +264,31 @@ def test_whatever_else_fails_the_pen_goes_up_and_the_arm_parks_first(arm: Arm, p
     np.testing.assert_allclose(simulated.recording.positions[-1], programme.park)
     assert len(simulated.recording.times_s) < len(programme.positions)
     _in_order(arm, simulated.recording, programme.rate_hz)
+
+
+@settings(max_examples=25, deadline=None)
+@given(pauses=st.lists(st.tuples(st.integers(0, 400), st.integers(1, 40)), max_size=3))
+def test_where_every_set_point_is_in_the_trajectory_is_said_before_it_is_sent(
+        arm: Arm, sketch: Trajectory, programme: Programme, pauses: list[tuple[int, int]]) -> None:
+    """Paused or not, the tip is above or at that sample; lifting and resting, above where it stopped."""
+    clock = InstantClock()
+    simulated = SimulatedArm(arm, clock)
+    pieces = list[list[tuple[int, float]]]()
+    paused = np.zeros(2000, dtype=bool)
+    for begin, length in pauses:
+        paused[begin:begin + length] = True
+    asked = iter(paused)
+
+    def onward(first: int, samples: FloatArray) -> None:
+        assert first == simulated.executed() + 1
+        pieces.append(piece(first, samples))
+
+    play(programme, arm, simulated, clock, request=lambda: Request.PAUSE if next(asked, False) else Request.GO,
+         onward=onward)
+    points = simulated.recording.set_points[:-1]
+    at = np.array([sample_after(pieces, count) for count in range(1, len(points) + 1)], dtype=float)
+    tips, planned = (link_nodes_mm(arm, positions)[:, -1, :2]
+                     for positions in (points, interpolate(arm.from_file_units(sketch.positions), at)))
+    drawing = slice(programme.approach, len(points) - programme.retreat)
+    assert np.linalg.norm(tips - planned, axis=1)[drawing].max() < 0.1
+    assert (np.diff(at) >= -1e-3).all()

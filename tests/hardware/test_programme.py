@@ -6,9 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from hardware.programme import make_programme
-from hardware.stopping import lift, slow_down
+from hardware.course import next_to_draw
+from hardware.programme import make_programme, parking
+from hardware.stopping import interpolate, lift, slow_down
 from hardware.tip import link_nodes_mm
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
@@ -86,6 +89,48 @@ def test_a_file_that_begins_on_the_paper_is_come_to_from_above(arm: Arm, sketch:
     tips = link_nodes_mm(arm, made.positions[:made.approach + 1])[:, -1]
     assert (np.diff(tips[:, 2]) <= 1e-9).all()
     np.testing.assert_allclose(tips[:, :2], np.tile(tips[0, :2], (len(tips), 1)), atol=1e-3)
+
+
+@pytest.mark.parametrize("pace", [1.0, 0.1])
+def test_a_drawing_is_joined_in_the_midst_of_a_stroke_from_above(arm: Arm, sketch: Trajectory, pace: float) -> None:
+    """Where the pen comes down, set off from rest: within limits, and nothing before that sample is drawn."""
+    path = arm.from_file_units(sketch.positions)
+    of_stroke = np.flatnonzero(sketch.stroke == 1)
+    for sample in (int(of_stroke[1]), int(of_stroke[len(of_stroke) // 2]), int(of_stroke[-2])):
+        made = make_programme(arm, path, sketch.stroke, 100.0 * pace, from_stroke=1, from_sample=sample)
+        padded = np.concatenate((np.tile(made.positions[0], (3, 1)), made.positions))
+        assert slow_down(arm, padded, 1 / made.rate_hz) <= 1.05
+        tips = link_nodes_mm(arm, made.positions)[:, -1]
+        come_down = made.approach
+        np.testing.assert_allclose(made.positions[come_down], path[sample], atol=1e-12)
+        low = tips[:come_down, 2] < arm.pen.clearance_mm
+        assert np.linalg.norm(tips[:come_down][low, :2] - tips[come_down, :2], axis=1).max() < 0.05
+        assert made.sample[0] == made.sample[come_down] == sample
+        assert (np.diff(made.sample) >= 0).all()
+        assert made.sample[-1] == len(path) - 1
+        refine = round(made.rate_hz / (100.0 * pace))
+        drawn = made.stroke != TRAVELLING
+        at = interpolate(path, made.sample[drawn])
+        np.testing.assert_allclose(made.positions[drawn], at, atol=1e-6 if refine == 1 else 1e-4)
+
+
+def test_when_nothing_is_left_to_draw_it_only_parks(arm: Arm, sketch: Trajectory) -> None:
+    path = arm.from_file_units(sketch.positions)
+    made = parking(arm, path, 100.0)
+    np.testing.assert_array_equal(made.positions, make_programme(arm, path, sketch.stroke, 100.0).park[None])
+    assert next_to_draw(sketch.stroke, float(made.sample[0])) == (3, None)
+
+
+@given(sample=st.floats(0, 1))
+def test_what_is_next_is_neither_lost_nor_drawn_twice(sketch: Trajectory, sample: float) -> None:
+    """Up to one sample."""
+    come_to = sample * (len(sketch.stroke) - 1)
+    stroke, midst = next_to_draw(sketch.stroke, come_to)
+    index = np.arange(len(sketch.stroke))
+    drawn = sketch.stroke != TRAVELLING
+    again = drawn & (index >= midst if midst is not None else sketch.stroke >= stroke)
+    assert again[drawn & (index > come_to)].all()
+    assert (again & (index < come_to - 1 - 1e-9)).sum() == 0
 
 
 def test_a_stroke_that_is_not_there_is_an_error(arm: Arm, sketch: Trajectory) -> None:

@@ -34,7 +34,6 @@ class Bench:
     answers: list[tuple[float, bytes]] = field(default_factory=list)
     models: list[Model] = field(default_factory=list)
     received: bytearray = field(default_factory=bytearray)
-    opened: Callable[[], None] = lambda: None
     _now_s: float = 0.0
     _deaf_until_s: float = 0.0
 
@@ -48,7 +47,6 @@ class Bench:
         self._now_s = max(self._now_s, deadline_s)
 
     def open(self, usual_baud: int) -> Bench:
-        self.opened()
         return self
 
     def seconds(self, size: int) -> float:

@@ -4,11 +4,14 @@
  *     emulator FIRMWARE.elf PINS.bin --lockstep                  time passes only as asked on standard input
  *     ... [--flip RATE] [--drop RATE] [--duplicate RATE] [--seed N]   of bytes, both ways
  *
- * PINS.bin: a record (u64 cycle, u8 channel, u8 level, 6 bytes 0) a change of a servo pin.
+ * PINS.bin: a record (u64 cycle, u8 channel, u8 level, 6 bytes 0) a change of a servo pin, and every few milliseconds
+ * one of no channel (255), so that a pin that stays as it is can be told from a time that has not come yet; of level 1
+ * where a reset lets go of the pins, which pull-downs then take low.
  * Lock-step: (u32 cycles, u16 n, n bytes to the controller) -> (u64 cycle now, u16 n, n bytes from it), once that many
  * cycles have passed or a frame's end came out. SIGUSR1 presses the reset button, SIGUSR2 stops Timer1 as a fault
- * would; SIGHUP pulls the cable, or puts it back. Ends on SIGTERM or the end of its input, and then writes to
- * standard error the lowest address that the stack came to.
+ * would, SIGPWR takes its power away for a moment: a reset that leaves nothing in memory. SIGHUP pulls the cable, or
+ * puts it back. Ends on SIGTERM or the end of its input, and then writes to standard error the lowest address that the
+ * stack came to.
  */
 #define _GNU_SOURCE
 #include <errno.h>
@@ -31,6 +34,8 @@
 
 #define CYCLES_PER_BYTE 640 /* 250 kbaud at 16 MHz */
 #define CYCLES_PER_TICK 3200
+#define CYCLES_PER_RECORD 80000 /* of no channel */
+#define NO_CHANNEL 255
 #define TIMSK1 0x6F
 
 struct bytes { uint8_t at[1 << 16]; uint16_t in, out; };
@@ -43,12 +48,13 @@ static uint8_t levels[8];
 static double flip, drop, duplicate;
 static uint64_t random_state = 1;
 static int frame_ended, uart_full;
-static volatile sig_atomic_t ended, reset_pressed, timer_stopped, cable_moved;
+static volatile sig_atomic_t ended, reset_pressed, power_lost, timer_stopped, cable_moved;
 
 static void on_signal(int which)
 {
     ended |= which == SIGTERM;
-    reset_pressed |= which == SIGUSR1;
+    reset_pressed |= which == SIGUSR1 || which == SIGPWR;
+    power_lost |= which == SIGPWR;
     timer_stopped |= which == SIGUSR2;
     cable_moved |= which == SIGHUP;
 }
@@ -77,13 +83,28 @@ static void on_byte_sent(struct avr_irq_t *irq, uint32_t value, void *param)
     frame_ended |= value == 0;
 }
 
+static avr_cycle_count_t recorded;
+
+static void record(uint8_t channel, uint8_t level)
+{
+    struct { uint64_t cycle; uint8_t channel, level, pad[6]; } now = { avr->cycle, channel, level, { 0 } };
+    fwrite(&now, sizeof now, 1, pins);
+    recorded = avr->cycle;
+}
+
 static void on_pin(struct avr_irq_t *irq, uint32_t value, void *param)
 {
     uint8_t channel = (uint8_t)(intptr_t)param, level = value & 1;
-    struct { uint64_t cycle; uint8_t channel, level, pad[6]; } record = { avr->cycle, channel, level, { 0 } };
     if (levels[channel] != level)
-        fwrite(&record, sizeof record, 1, pins);
+        record(channel, level);
     levels[channel] = level;
+}
+
+static void flush_pins(void)
+{
+    if (avr->cycle - recorded >= CYCLES_PER_RECORD)
+        record(NO_CHANNEL, 0);
+    fflush(pins);
 }
 
 /* simavr's UART takes a little longer for a byte than the line, and gathers 64 of them meanwhile. */
@@ -125,6 +146,12 @@ static void run(avr_cycle_count_t until, int or_frame)
         if (reset_pressed) {
             reset_pressed = 0;
             avr_reset(avr);
+            for (uint16_t at = 0x100; power_lost && at <= avr->ramend; at++)
+                avr->data[at] = (uint8_t)(256 * uniform());
+            power_lost = 0;
+            for (int i = 0; i < 8; i++)
+                on_pin(NULL, 0, (void *)(intptr_t)i);
+            record(NO_CHANNEL, 1);
         }
         if (timer_stopped) {
             timer_stopped = 0;
@@ -158,7 +185,7 @@ static void lockstep(FILE *replies)
         reply.n = (uint16_t)(from_controller.in - from_controller.out);
         for (int i = 0; i < reply.n; i++)
             bytes[i] = from_controller.at[from_controller.out++];
-        fflush(pins);
+        flush_pins();
         fwrite(&reply, sizeof reply, 1, replies);
         fwrite(bytes, 1, reply.n, replies);
         fflush(replies);
@@ -213,7 +240,7 @@ static void real_time(const char *link)
         if (n && write(line, bytes, (size_t)n) < 0 && errno != EAGAIN && errno != EBADF) /* nobody listens: lost */
             return;
         double ahead = began + (double)avr->cycle / 16e6 - now();
-        fflush(pins);
+        flush_pins();
         if (ahead > 0)
             usleep((useconds_t)(1e6 * ahead));
         else if (ahead < -0.05) /* the host machine stalled us: a controller would not have been; do not hurry after */
@@ -242,6 +269,7 @@ int main(int argc, char **argv)
     struct sigaction action = { .sa_handler = on_signal, .sa_flags = SA_RESTART };
     sigaction(SIGUSR1, &action, NULL);
     sigaction(SIGUSR2, &action, NULL);
+    sigaction(SIGPWR, &action, NULL);
     sigaction(SIGHUP, &action, NULL);
     action.sa_flags = 0;
     sigaction(SIGTERM, &action, NULL);

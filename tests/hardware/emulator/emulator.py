@@ -19,6 +19,8 @@ from planner.arrays import FloatArray, IntArray
 
 FIRMWARE = Path(__file__).parents[3] / "hardware" / "firmware"
 CYCLES_PER_S = 16_000_000
+_NO_CHANNEL = 255
+_LONGEST_PULSE_CYCLES = 2601 * 16
 _MISSING = [tool for tool, there in {
     "gcc-avr": shutil.which("avr-gcc"), "gcc": shutil.which("gcc"), "make": shutil.which("make"),
     "avr-libc": any(Path(base, "avr/io.h").exists() for base in ("/usr/lib/avr/include", "/usr/avr/include")),
@@ -81,15 +83,22 @@ class Emulator:
     pins: Path
     stack_report: str = field(default="", init=False)
 
+    def _send(self, what: signal.Signals) -> None:
+        os.kill(self.process.pid, what)  # Popen.send_signal does nothing in a process that was forked from its own
+
     def reset(self) -> None:
-        self.process.send_signal(signal.SIGUSR1)
+        self._send(signal.SIGUSR1)
+
+    def lose_power(self) -> None:
+        """For a moment: as a reset, but its memory is lost."""
+        self._send(signal.SIGPWR)
 
     def move_cable(self) -> None:
         """Pull it, or put it back."""
-        self.process.send_signal(signal.SIGHUP)
+        self._send(signal.SIGHUP)
 
     def stop_timer(self) -> None:
-        self.process.send_signal(signal.SIGUSR2)
+        self._send(signal.SIGUSR2)
 
     def end(self) -> None:
         if self.stack_report:
@@ -106,12 +115,17 @@ class Emulator:
             self.process.stdout.close()
 
     def pulses(self, channel: int) -> Pulses:
-        """All whole pulses so far."""
+        """All pulses so far, of one that lasts what there has been of it; left out are those that a reset cut short,
+        and one that is under way and may still end in time."""
         changes = np.fromfile(self.pins, dtype=[("cycle", "<u8"), ("channel", "u1"), ("level", "u1"), ("pad", "V6")])
         mine = changes[changes["channel"] == channel]
-        cycles: IntArray = mine["cycle"].astype(np.int64)[: len(mine) // 2 * 2]
-        assert (mine["level"][: len(cycles)].reshape(-1, 2) == (1, 0)).all()
-        rises, falls = cycles[::2], cycles[1::2]
+        cycles: IntArray = mine["cycle"].astype(np.int64)
+        assert (mine["level"] == np.arange(len(mine)) % 2 ^ 1).all()
+        if len(cycles) % 2:
+            now = int(changes["cycle"][-1])
+            cycles = np.append(cycles, now) if now - cycles[-1] > _LONGEST_PULSE_CYCLES else cycles[:-1]
+        resets = changes["cycle"][(changes["channel"] == _NO_CHANNEL) & (changes["level"] == 1)]
+        rises, falls = cycles.reshape(-1, 2)[~np.isin(cycles[1::2], resets)].T
         return Pulses(rises / CYCLES_PER_S, (falls - rises) / CYCLES_PER_S * 1e6)
 
 
@@ -154,6 +168,11 @@ class LockStep:
     def sleep_until(self, deadline_s: float) -> None:
         while self.now_s() < deadline_s:
             self._run(max(round(deadline_s * CYCLES_PER_S) - self.cycle, 1))
+
+    def catch_up(self) -> None:
+        """With what another process, which had this controller for a while, has made of it."""
+        self._in = self._out = b""
+        self._run(1)
 
     def _run(self, cycles: int) -> None:
         stdin, stdout = self.emulator.process.stdin, self.emulator.process.stdout

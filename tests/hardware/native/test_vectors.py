@@ -11,7 +11,7 @@ import pytest
 
 from hardware.codecs import cobs, native
 from hardware.codecs.crc import crc16
-from hardware.codecs.native import Channel, End, Fault, Info, Key, Order, Result, State, Status
+from hardware.codecs.native import Channel, End, Fault, Info, Key, Order, Record, Result, State, Status
 from tests.hardware.emulator.emulator import FIRMWARE, require_tools
 
 _VECTORS: dict[str, Any] = json.loads((FIRMWARE / "vectors.json").read_text())
@@ -28,19 +28,21 @@ _HOST_FRAMES = {
     "STOP": native.order(Order.STOP, 7),
     "CLEAR": native.order(Order.CLEAR, 8),
     "OFF": native.order(Order.OFF, 9),
+    "RECALL": native.order(Order.RECALL, 10),
     "KEY of 10 ms to 1500, 1500.0625, 1552, 400, 2600 us":
         native.sequenced(Key(100, (24000, 24001, 24832, 6400, 41600)), 255),
     "KEY of 6553.5 ms whose payload has zeros": native.sequenced(Key(0xFFFF, (0x2000, 0x4000, 0x8000)), 0),
     "END": native.sequenced(End(), 17),
 }
 _CONTROLLER_FRAMES = {
-    "INFO of protocol 1, firmware 1.0, 8 channels of 400 to 2600 us":
-        Info(1, 0x1234, 1, (1, 0), 8, 6400, 41600, ()),
-    "INFO with two channels at 1500, 1250.5 us": Info(1, 0x1234, 1, (1, 0), 8, 6400, 41600, (24000, 20008)),
-    "STATUS of RUN: 7 expected, 12 free, 300 reached":
-        Status(5, 0x1234, State.RUN, Fault.NONE, Result.DONE, 7, 12, False, 300),
+    "INFO of protocol 2, firmware 2.0, 8 channels of 400 to 2600 us":
+        Info(1, 0x1234, 2, (2, 0), 8, 6400, 41600, ()),
+    "INFO with two channels at 1500, 1250.5 us": Info(1, 0x1234, 2, (2, 0), 8, 6400, 41600, (24000, 20008)),
+    "STATUS of RUN: 7 expected, 12 free, 70000 reached":
+        Status(5, 0x1234, State.RUN, Fault.NONE, Result.DONE, 7, 12, False, 70_000),
     "STATUS of FAULT, stopped, with a gap, last order refused":
-        Status(9, 0x1234, State.FAULT, Fault.STOPPED, Result.REFUSED_STATE, 0, 64, True, 0xFFFF),
+        Status(9, 0x1234, State.FAULT, Fault.STOPPED, Result.REFUSED_STATE, 0, 64, True, 0xFFFF_FFFF),
+    "RECORD of session 0x1234: 70000 reached, in an under-run": Record(10, 0x1234, 70_000, State.UNDERRUN),
 }
 
 
@@ -64,7 +66,7 @@ def test_the_host_reads_them(name: str) -> None:
 @pytest.mark.parametrize("damaged", _VECTORS["damaged"])
 def test_the_host_passes_over_damaged_ones(damaged: str) -> None:
     reader = native.Reader()
-    good = bytes.fromhex(_FRAMES["STATUS of RUN: 7 expected, 12 free, 300 reached"]["frame"])
+    good = bytes.fromhex(_FRAMES["STATUS of RUN: 7 expected, 12 free, 70000 reached"]["frame"])
     assert len(reader.feed(bytes.fromhex(damaged) + good)) == 1
 
 

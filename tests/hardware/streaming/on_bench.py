@@ -9,10 +9,10 @@ from tests.hardware.controllers.bench import Bench
 
 
 def plan_run(bench: Bench, *arguments: str) -> int:
-    """The exit code of `plan run`, with `--port` at the bench."""
-    def line(name: str, baud: int | None, opened: object) -> Bench:
+    """The exit code of `plan run`, with `--port` at the bench, by a name that other runs may use as well."""
+    def line(name: str, baud: int | None) -> Bench:
         return bench
 
     with (mock.patch("planner.cli.run_playing.Line", line),
           mock.patch("planner.cli.run_playing.WallClock", return_value=bench)):
-        return main(["run", *arguments, "--port", bench.name])
+        return main(["run", *arguments, "--port", "loop://"])

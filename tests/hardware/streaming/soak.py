@@ -14,18 +14,21 @@ import shapely
 
 from hardware.calibration import pulse_calibration
 from hardware.drawn import drawn_lines
-from hardware.journal import journal_path, read_journal
+from hardware.journal import journal_path
+from hardware.journal_entry import read_journal
 from hardware.tip import link_nodes_mm
 from planner.arms.arm_file import load_arm
 from planner.arrays import BoolArray, FloatArray
-from planner.trajectory import read_trajectory
+from planner.trajectory import TRAVELLING, read_trajectory
 from tests.hardware.controllers.bench import Bench
 from tests.hardware.controllers.lines import Model
 from tests.hardware.controllers.maestro import MaestroModel
 from tests.hardware.controllers.ssc32 import Ssc32Model
+from tests.hardware.rounding import rounding_mm
 from tests.hardware.streaming.on_bench import plan_run
 
-SAME_MM = 0.05
+_SAME_MM = 0.05
+"""Strokes are drawn by the same set points in every run, rounded in the same way."""
 _ONE_SPOT_MM = 1e-6
 _MOST_RUNS = 200
 _EVERY = 0.2
@@ -38,8 +41,7 @@ class Outcome:
 
     dead, reset: interruptions. twice: how often a stroke was drawn whole that was there already; undoubted: strokes of
     which that is true though no journal had them in doubt or just begun. claimed: strokes that a journal called drawn
-    too early; lost: those that never were. largest_mm: how far ink is from that of an undisturbed run, or a stroke
-    from ink.
+    too early; lost: those that never were. off_mm: how far ink is from where the plan has some.
     """
 
     dead: int = 0
@@ -48,19 +50,27 @@ class Outcome:
     undoubted: list[int] = field(default_factory=list)
     claimed: list[int] = field(default_factory=list)
     lost: list[int] = field(default_factory=list)
-    largest_mm: float = 0.0
+    off_mm: float = 0.0
 
 
 class Soak:
-    """Of one trajectory of pulse servos on one of the drivers `maestro` and `ssc32`."""
+    """Of one trajectory of pulse servos on one of the drivers `maestro` and `ssc32`.
+
+    bound_mm: how far off the controller's resolution lets ink be. A run that resumes sets off by set points of its own,
+    and rounds them as it rounds all others.
+    """
 
     def __init__(self, csv: Path, driver: str) -> None:
         self._csv, self._driver = csv, driver
-        self._arm = load_arm(read_trajectory(csv).arm)
+        trajectory = read_trajectory(csv)
+        self._arm, self._stroke = load_arm(trajectory.arm), trajectory.stroke
+        self._positions = self._arm.from_file_units(trajectory.positions)
+        self._step_us = 1.0 if driver == "ssc32" else 0.25
+        self.bound_mm = rounding_mm(self._arm, self._positions[self._stroke != TRAVELLING], self._step_us)
         bench = Bench(self._model())
         assert self._run(bench, resume=False) == 0
         self._whole = bench.taken
-        self._undisturbed = _Ink(self._ink(bench.models))
+        self._planned = _Ink(drawn_lines(self._arm, self._positions))
         self._wanted = self._strokes()
 
     def draw(self, rng: np.random.Generator) -> Outcome:
@@ -93,9 +103,7 @@ class Soak:
         outcome.twice = int(np.sum(times[again] - 1))
         outcome.undoubted = [stroke for stroke in again.tolist() if stroke not in excused]
         outcome.lost = np.flatnonzero(times == 0).tolist()
-        everything = _Ink(ink)
-        outcome.largest_mm = max(*(self._undisturbed.furthest_mm(line) for line in ink),
-                                 *(everything.furthest_mm(stroke) for stroke in self._wanted))
+        outcome.off_mm = max(self._planned.furthest_mm(line) for line in ink)
         return outcome
 
     def _disturbed(self, model: Model, rng: np.random.Generator, outcome: Outcome) -> Bench:
@@ -146,16 +154,15 @@ class Soak:
 
     def _strokes(self) -> list[FloatArray]:
         """Lines (n, 2) in mm of the strokes alone, lowering and lifting left out, in what the servos can be told."""
-        trajectory, calibration = read_trajectory(self._csv), pulse_calibration(self._arm)
-        step_us = 1.0 if self._driver == "ssc32" else 0.25
-        pulses_us = calibration.to_servos(self._arm.from_file_units(trajectory.positions))
-        tip_mm = link_nodes_mm(self._arm, calibration.to_joints(np.rint(pulses_us / step_us) * step_us))[:, -1, :2]
-        return [tip_mm[trajectory.stroke == stroke] for stroke in range(trajectory.stroke.max() + 1)]
+        calibration = pulse_calibration(self._arm)
+        steps = np.rint(calibration.to_servos(self._positions) / self._step_us)
+        tip_mm = link_nodes_mm(self._arm, calibration.to_joints(steps * self._step_us))[:, -1, :2]
+        return [tip_mm[self._stroke == stroke] for stroke in range(self._stroke.max() + 1)]
 
     def _covered(self, drawn: Sequence[FloatArray]) -> BoolArray:
         """(n_strokes,) whether each stroke is there from end to end."""
         ink = _Ink(drawn)
-        return np.array([ink.furthest_mm(stroke) <= SAME_MM for stroke in self._wanted])
+        return np.array([ink.furthest_mm(stroke) <= _SAME_MM for stroke in self._wanted])
 
 
 class _Ink:
@@ -166,7 +173,7 @@ class _Ink:
 
     def furthest_mm(self, line: FloatArray) -> float:
         """How far off a point of `line` is at the most."""
-        points = shapely.points(shapely.get_coordinates(shapely.segmentize(_shape(line), SAME_MM / 2)))
+        points = shapely.points(shapely.get_coordinates(shapely.segmentize(_shape(line), _SAME_MM / 2)))
         _, distance_mm = self._lines.query_nearest(points, return_distance=True, all_matches=False)
         return float(distance_mm.max()) if len(distance_mm) else np.inf
 

@@ -45,7 +45,7 @@ def _programme(arm: Arm) -> Programme:
     """Every set point is another one, and half-way within all ranges."""
     positions = np.tile((arm.minimum + arm.maximum) / 2, (N, 1))
     positions[:, 0] += np.linspace(0.0, 0.2, N)
-    return Programme(positions, LABELS, RATE_HZ, 0, 0)
+    return Programme(positions, LABELS, np.arange(float(N)), RATE_HZ, 0, 0)
 
 
 def _driver(name: str, bench: Bench) -> Driver:

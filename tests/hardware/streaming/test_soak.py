@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from planner.cli import main
-from tests.hardware.streaming.soak import SAME_MM, Soak
+from tests.hardware.streaming.soak import Soak
 
 
 @pytest.mark.parametrize("driver", ["maestro", "ssc32"])
@@ -23,7 +23,7 @@ def test_whatever_dies_or_is_reset_the_drawing_gets_done(
     for seed in range(2):
         outcome = soak.draw(np.random.default_rng(seed))
         assert (outcome.lost, outcome.claimed, outcome.undoubted) == ([], [], [])
-        assert outcome.largest_mm <= SAME_MM
+        assert outcome.off_mm <= soak.bound_mm
         interruptions += outcome.dead + outcome.reset
     assert interruptions > 2
     assert "controller was not heard to have drawn" in capsys.readouterr().err

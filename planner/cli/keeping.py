@@ -1,0 +1,100 @@
+"""`plan run`: what a run keeps for a later --resume."""
+
+from __future__ import annotations
+
+import argparse
+from contextlib import suppress
+
+from hardware.clock import Clock
+from hardware.driver import Driver, Remembering
+from hardware.drivers import SIMULATORS
+from hardware.journal import Journal
+from hardware.journal_entry import Entry
+from planner.arrays import FloatArray
+from planner.cli.one_run import is_kept, journal_of
+from planner.cli.resuming import FURTHER, in_doubt_words
+from planner.cli.terminal import print_note, print_warnings
+from planner.errors import OutputError
+
+
+class Keeping:
+    """A journal, begun once the arm is there to draw, for a wrong port must not cost an earlier run's. Where none can
+    be written there is a warning and none; a run that resumes is refused then, for what it draws would be drawn again.
+
+    Of a controller that remembers how far it came the journal says how it counts; of others, which strokes were sent
+    before they are known to be drawn.
+    """
+
+    def __init__(self, options: argparse.Namespace, beginning: Entry, last_stroke: int, driver: Driver, rate_hz: float,
+                 clock: Clock) -> None:
+        self._options, self._beginning, self._last_stroke = options, beginning, last_stroke
+        self._rate_hz, self._clock = rate_hz, clock
+        self._remembering = driver if isinstance(driver, Remembering) else None
+        self._journal: Journal | None = None
+
+    def opened(self) -> None:
+        """The line is open. What an earlier run's controller has told is kept before connecting makes it forget."""
+        if self._options.resume and self._remembering:
+            self._begin()
+
+    def connected(self) -> None:
+        if self._journal is None:
+            self._begin()
+        if self._journal and self._remembering:
+            self._journal.counted(self._remembering.tally(1 / self._rate_hz))
+
+    def onward(self, first: int, samples: FloatArray) -> None:
+        if self._journal and self._remembering:
+            self._journal.onward(first, samples)
+            if first == 1:  # before anything is drawn that could not be told from what is not
+                self._journal.wait()
+
+    def reached(self, executed: int, sent: int) -> None:
+        if self._journal and self._remembering:
+            self._journal.reached(executed, sent)
+
+    def sent(self, stroke: int) -> None:
+        if self._journal and not self._remembering:
+            self._journal.sent(stroke)
+
+    def finished(self, stroke: int) -> None:
+        if self._journal:
+            self._journal.finished(stroke)
+
+    def close(self, ended: str, *, complete: bool) -> None:
+        """Say how the run ended, and from where another goes on. Errors: OutputError where all else went well."""
+        if self._journal is None:
+            return
+        try:
+            self._journal.close(ended, complete=complete)
+        except OutputError as error:
+            if complete:
+                raise
+            print_warnings([str(error)])
+        if not complete:
+            print_note(self._rest(self._journal))
+
+    def _begin(self) -> None:
+        """In place of the earlier run's. Errors: OutputError where this run resumes."""
+        options = self._options
+        if not is_kept(options.trajectory):
+            print_warnings([f"there will be nothing for --resume to go by: {options.trajectory} is no file to find "
+                            "again"])
+            return
+        path = journal_of(options)
+        try:
+            self._journal = Journal(path, self._beginning, self._clock, options.port or "")
+        except OutputError as error:
+            if options.resume:
+                raise
+            with suppress(OSError):
+                if path.is_file():
+                    path.unlink()  # it does not tell of this run
+            print_warnings([f"there will be nothing for --resume to go by: {error}"])
+
+    def _rest(self, journal: Journal) -> str:
+        if journal.next_stroke > self._last_stroke:
+            left = "there is nothing left for --resume" if self._options.driver in SIMULATORS else "--resume parks"
+            return f"all strokes are drawn; {left}"
+        doubt = FURTHER if self._remembering else in_doubt_words(journal.in_doubt)
+        return f"--resume goes on from stroke {journal.next_stroke} of 0..{self._last_stroke}{doubt}"
