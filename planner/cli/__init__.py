@@ -75,6 +75,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.ports import ports
 
             return ports(rest)
+        case "measure":
+            from planner.cli.measure import measure
+
+            return measure(rest)
         case "compare":
             from planner.cli.compare import compare
 
