@@ -58,12 +58,14 @@ def _stroke(rng: np.random.Generator) -> FloatArray:
 
 def settings_of(rng: np.random.Generator) -> PlanSettings:
     return PlanSettings(
-        arm=str(rng.choice(known_arms())), method=Method(rng.choice([method.value for method in Method])),
+        arm=str(rng.choice(known_arms())),
+        method=Method(rng.choice([method.value for method in Method])),
         rate_hz=float(np.round(10.0 ** rng.uniform(np.log10(50.0), 3.0), 3)),
         tolerance_mm=float(np.round(10.0 ** rng.uniform(np.log10(0.005), np.log10(0.1)), 5)),
         speed_mm_s=float(np.round(10.0 ** rng.uniform(1.0, 2.6), 2)),
         lowering_speed_mm_s=float(np.round(10.0 ** rng.uniform(0.7, 2.3), 2)),
-        margin_mm=float(rng.choice([0.0, 5.0])))
+        margin_mm=float(rng.choice([0.0, 5.0])),
+    )
 
 
 def main() -> None:
@@ -84,8 +86,10 @@ def main() -> None:
             counts[_outcome(file, settings, number)] += 1
             if time.perf_counter() - started > _SLOW_S:
                 print(f"{number} took {time.perf_counter() - started:.0f} s: {settings}")
-    print(", ".join(f"{count} {outcome}" for outcome, count in sorted(counts.items())),
-          f"in {time.perf_counter() - begin:.0f} s")
+    print(
+        ", ".join(f"{count} {outcome}" for outcome, count in sorted(counts.items())),
+        f"in {time.perf_counter() - begin:.0f} s",
+    )
 
 
 def _outcome(file: Path, settings: PlanSettings, number: int) -> str:
@@ -97,12 +101,14 @@ def _outcome(file: Path, settings: PlanSettings, number: int) -> str:
     except Exception as error:
         print(f"{number} BROKE: {type(error).__name__}: {error}\n  {settings}\n  {file.read_text()}", flush=True)
         return "BROKEN"
-    verdict = check_trajectory(planned.trajectory, load_arm(settings.arm), read_drawing(file), settings.tolerance_mm)
+    check_result = check_trajectory(
+        planned.trajectory, load_arm(settings.arm), read_drawing(file), settings.tolerance_mm
+    )
     for warning in planned.summary.warnings:
         print(f"{number} says: {warning}")
-    if verdict.passed:
+    if check_result.passed:
         return "passed"
-    faults = "\n  ".join(map(str, verdict.faults))
+    faults = "\n  ".join(map(str, check_result.faults))
     print(f"{number} FAULTED: {settings}\n  {faults}\n  {file.read_text()[:1500]}", flush=True)
     return "FAULTED"
 

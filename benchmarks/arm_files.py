@@ -24,10 +24,40 @@ LONGEST_S, MOST_BYTES = 10.0, 1 << 30
 _DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 10" fill="none" stroke="black">\
 <path d="M1 1L19 9"/></svg>"""
 
-VALUES = ("nan", "inf", "-inf", "0", "-0.0", "1e-320", "1e9", "-1e9", "1e308", "1" + "0" * 400, "-5", "7.5", '"text"',
-          "true", "[]", "{}", "[1, 2, 3]", "[[]]", "2026-01-01", "''", '"' + "x" * 300 + '"', '"\\u0000"',
-          '"continuous"', '"revolute"', '"prismatic"', '"q1"', '"tool_axis"', '"free"', '"coupling"', "[0.0, 0.0, 1.0]",
-          "1e-6", "360")
+VALUES = (
+    "nan",
+    "inf",
+    "-inf",
+    "0",
+    "-0.0",
+    "1e-320",
+    "1e9",
+    "-1e9",
+    "1e308",
+    "1" + "0" * 400,
+    "-5",
+    "7.5",
+    '"text"',
+    "true",
+    "[]",
+    "{}",
+    "[1, 2, 3]",
+    "[[]]",
+    "2026-01-01",
+    "''",
+    '"' + "x" * 300 + '"',
+    '"\\u0000"',
+    '"continuous"',
+    '"revolute"',
+    '"prismatic"',
+    '"q1"',
+    '"tool_axis"',
+    '"free"',
+    '"coupling"',
+    "[0.0, 0.0, 1.0]",
+    "1e-6",
+    "360",
+)
 
 
 def damaged(text: str, chance: random.Random) -> str:
@@ -45,14 +75,15 @@ def damaged(text: str, chance: random.Random) -> str:
                 at = chance.choice(keyed)
                 lines[at] = lines[at].split("=")[0] + "= " + chance.choice(VALUES)
             case 5:
-                lines[at] = re.sub(r"-?\d+\.?\d*", lambda found: f"{float(found[0]) * 10 ** chance.uniform(-3, 3):.6g}",
-                                   lines[at])
+                lines[at] = re.sub(
+                    r"-?\d+\.?\d*", lambda found: f"{float(found[0]) * 10 ** chance.uniform(-3, 3):.6g}", lines[at]
+                )
             case 6:
                 joints = "\n".join(lines).split("[[joints]]")
                 kept = chance.sample(range(1, len(joints)), chance.randint(0, len(joints) - 1)) if joints[1:] else []
                 lines = "[[joints]]".join([joints[0], *(joints[index] for index in kept)]).splitlines() or [""]
             case 7:
-                lines[at] = lines[at][:chance.randint(0, len(lines[at]))] + chance.choice("[]{}=\"',\x00é#.")
+                lines[at] = lines[at][: chance.randint(0, len(lines[at]))] + chance.choice("[]{}=\"',\x00é#.")
             case _:
                 lines[at] = re.sub(r"[a-z]\w*", "unheard_of", lines[at], count=1)
         text = "\n".join(lines) + "\n"
@@ -61,17 +92,24 @@ def damaged(text: str, chance: random.Random) -> str:
 
 def outcome(command: list[str], folder: Path) -> tuple[int, str]:
     """Exit code and last line on standard error; 124 where time runs out."""
+
     def bounded() -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (int(LONGEST_S), int(LONGEST_S) + 1))
 
-    ended = subprocess.run([sys.executable, "-m", "planner.cli", *command], cwd=folder, capture_output=True, text=True,
-                           preexec_fn=bounded, check=False)
+    ended = subprocess.run(
+        [sys.executable, "-m", "planner.cli", *command],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        preexec_fn=bounded,
+        check=False,
+    )
     code = 124 if ended.returncode in (-9, -24) else ended.returncode
     return code, ended.stderr.strip()
 
 
 def main() -> int:
-    count, seed = (int(argument) for argument in (*sys.argv[1:3], *("2000", "0")[len(sys.argv) - 1:]))
+    count, seed = (int(argument) for argument in (*sys.argv[1:3], *("2000", "0")[len(sys.argv) - 1 :]))
     chance = random.Random(seed)  # noqa: S311  # the same files for the same seed
     texts = [(arms_folder() / f"{name}.toml").read_text(encoding="utf-8") for name in known_arms()]
     codes: Counter[int] = Counter()

@@ -46,9 +46,14 @@ def main() -> None:
         drawing_file, file = Path(folder, "drawing.svg"), Path(folder, "traj.csv")
         for index in range(options.count):
             settings = PlanSettings(
-                arm=str(rng.choice(ARMS)), method=Method(rng.choice(METHODS)), rate_hz=float(rng.choice(RATES_HZ)),
-                tolerance_mm=float(rng.choice(TOLERANCES_MM)), rotate_deg=float(rng.choice((0.0, 0.0, 90.0, 17.5))),
-                fit=bool(rng.random() < 0.8), skip_unreachable=bool(rng.random() < 0.2))
+                arm=str(rng.choice(ARMS)),
+                method=Method(rng.choice(METHODS)),
+                rate_hz=float(rng.choice(RATES_HZ)),
+                tolerance_mm=float(rng.choice(TOLERANCES_MM)),
+                rotate_deg=float(rng.choice((0.0, 0.0, 90.0, 17.5))),
+                fit=bool(rng.random() < 0.8),
+                skip_unreachable=bool(rng.random() < 0.2),
+            )
             n_things = int(rng.integers(1, 6))
             text = EXAMPLES[index].read_text() if index < len(EXAMPLES) else random_drawing(rng, n_things)
             drawing_file.write_text(text)

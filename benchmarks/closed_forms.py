@@ -2,14 +2,14 @@
 
     OMP_NUM_THREADS=1 python benchmarks/closed_forms.py [--targets N] [--compared N] [--seed N]
 
-Targets are the poses of random postures within the limits. A closed form gives all branches of a million of them;
+Targets are the poses of random configurations within the limits. A closed form gives all branches of a million of them;
 ikpy, pin (closed-loop inverse kinematics) and the Robotics Toolbox's compiled Levenberg-Marquardt solver (`ik_LM`),
-where they are installed (extra `benchmark`), give one posture to each of the first few, from the middle of
+where they are installed (extra `benchmark`), give one configuration to each of the first few, from the middle of
 the ranges and with their own restarts.
 
-A target counts as solved where the tip is met to 0.01 mm and, unless the arm holds the tip alone, the axes of the
-frame to 1e-4. Of the solved ones `outside` is the share whose posture breaks a joint limit, whole turns taken off;
-for closed forms, whose branches none keeps the limits. The error is the worst of the solved ones.
+A target counts as solved where the tip is met to 0.01 mm and, unless the arm holds the tip alone, the axes of the frame
+to 1e-4. Of the solved ones `outside` is the share whose configuration breaks a joint limit, whole turns taken off; for
+closed forms, whose branches none keeps the limits. The error is the worst of the solved ones.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ import numpy as np
 
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.arm_file import load_arm
-from planner.arms.closed_forms import FAMILIES
-from planner.arms.closed_forms.branches import Branches, within_limits
 from planner.arrays import BoolArray, FloatArray
+from planner.inverse_kinematics.closed_forms import FAMILIES
+from planner.inverse_kinematics.closed_forms.branches import Branches, within_limits
 
 ARMS = ("drawing_arm", "scara", "three_joint", "six_joint", "stanford")
 Solver = Callable[[FloatArray], FloatArray]
@@ -89,14 +89,24 @@ def in_metres(pose: FloatArray) -> FloatArray:
 def ikpy_solver(arm: Arm) -> Solver:
     from ikpy.chain import Chain
     from ikpy.link import OriginLink, URDFLink
+
     before, after = fixed_parts(arm)
     si = in_si(arm)
-    along = {JointKind.REVOLUTE: {"rotation": [0, 0, 1]},
-             JointKind.PRISMATIC: {"translation": [0, 0, 1], "joint_type": "prismatic"}}
+    along = {
+        JointKind.REVOLUTE: {"rotation": [0, 0, 1]},
+        JointKind.PRISMATIC: {"translation": [0, 0, 1], "joint_type": "prismatic"},
+    }
     links = [OriginLink()]
     for fixed, joint, unit in zip(before, arm.joints, si, strict=True):
-        links.append(URDFLink(joint.name, fixed[:3, 3], _roll_pitch_yaw(fixed), **along[joint.kind],
-                              bounds=(joint.minimum * unit, joint.maximum * unit)))
+        links.append(
+            URDFLink(
+                joint.name,
+                fixed[:3, 3],
+                _roll_pitch_yaw(fixed),
+                **along[joint.kind],
+                bounds=(joint.minimum * unit, joint.maximum * unit),
+            )
+        )
     links.append(URDFLink("tool", after[:3, 3], _roll_pitch_yaw(after), joint_type="fixed"))
     chain = Chain(links, active_links_mask=[False, *[True] * arm.n_joints, False])
     start = np.concatenate(([0.0], middle(arm) * si, [0.0]))
@@ -105,17 +115,22 @@ def ikpy_solver(arm: Arm) -> Solver:
     def solve(pose: FloatArray) -> FloatArray:
         found = chain.inverse_kinematics_frame(in_metres(pose), initial_position=start, orientation_mode=whole)
         return found[1:-1] / si
+
     return solve
 
 
 def _roll_pitch_yaw(transform: FloatArray) -> list[float]:
     r = transform[:3, :3]
-    return [float(np.arctan2(r[2, 1], r[2, 2])), float(np.arctan2(-r[2, 0], np.hypot(r[2, 1], r[2, 2]))),
-            float(np.arctan2(r[1, 0], r[0, 0]))]
+    return [
+        float(np.arctan2(r[2, 1], r[2, 2])),
+        float(np.arctan2(-r[2, 0], np.hypot(r[2, 1], r[2, 2]))),
+        float(np.arctan2(r[1, 0], r[0, 0])),
+    ]
 
 
 def pin_solver(arm: Arm, iterations: int = 200, step: float = 0.5, damping: float = 1e-8) -> Solver:
     import pinocchio as pin
+
     before, after = fixed_parts(arm)
     si = in_si(arm)
     model = pin.Model()
@@ -145,21 +160,33 @@ def pin_solver(arm: Arm, iterations: int = 200, step: float = 0.5, damping: floa
             gram = jacobian @ jacobian.T + damping * np.eye(len(error))
             q = q - step * jacobian.T @ np.linalg.solve(gram, error)
         return q / si
+
     return solve
 
 
 def toolbox_solver(arm: Arm) -> Solver:
     import roboticstoolbox as rtb
+
     si = in_si(arm)
     links = []
     for joint, unit in zip(arm.joints, si, strict=True):
         limits = [joint.minimum * unit, joint.maximum * unit]
         if joint.kind is JointKind.REVOLUTE:
-            links.append(rtb.RevoluteDH(d=joint.d_mm / 1e3, a=joint.a_mm / 1e3, alpha=joint.alpha_rad,
-                                        offset=joint.theta_rad, qlim=limits))
+            links.append(
+                rtb.RevoluteDH(
+                    d=joint.d_mm / 1e3, a=joint.a_mm / 1e3, alpha=joint.alpha_rad, offset=joint.theta_rad, qlim=limits
+                )
+            )
         else:
-            links.append(rtb.PrismaticDH(theta=joint.theta_rad, a=joint.a_mm / 1e3, alpha=joint.alpha_rad,
-                                         offset=joint.d_mm / 1e3, qlim=limits))
+            links.append(
+                rtb.PrismaticDH(
+                    theta=joint.theta_rad,
+                    a=joint.a_mm / 1e3,
+                    alpha=joint.alpha_rad,
+                    offset=joint.d_mm / 1e3,
+                    qlim=limits,
+                )
+            )
     chain = rtb.DHRobot(links).ets()
     start = middle(arm) * si
     weights = np.array([1.0, 1, 1, 1, 1, 1] if arm.n_joints > 3 else [1.0, 1, 1, 0, 0, 0])
@@ -167,6 +194,7 @@ def toolbox_solver(arm: Arm) -> Solver:
     def solve(pose: FloatArray) -> FloatArray:
         found = chain.ik_LM(in_metres(pose), q0=start, tol=1e-13, mask=weights, joint_limits=True)
         return found.q / si if found.success else np.full(arm.n_joints, np.nan)
+
     return solve
 
 
@@ -202,10 +230,10 @@ def closed_form(arm: Arm, target: FloatArray, joints: FloatArray) -> None:
         seconds = time.perf_counter() - began
         inside = within_limits(arm, branches)
         best = np.where(inside.any(axis=1), inside.argmax(axis=1), branches.exist.argmax(axis=1))
-        found = arm.complete(branches.postures[np.arange(len(target)), best])
+        found = arm.complete(branches.configurations[np.arange(len(target)), best])
         off, turned = misses(arm, found, target)
         solved = (off < 0.01) & (turned < 1e-4)
-        count = branches.postures.shape[1]
+        count = branches.configurations.shape[1]
         row(arm, f"closed form, {name}, {count} branches", len(target), seconds, solved, ~inside.any(axis=1), off)
 
 
@@ -237,15 +265,17 @@ def main() -> None:
     print("|---|---|---:|---:|---:|---:|---:|")
     for name in ARMS:
         arm = load_arm(name)
-        free = list(arm.free_joints)
+        independent = list(arm.independent_joints)
         joints = np.empty((0, arm.n_joints))
         while len(joints) < options.targets:
-            drawn = arm.complete(rng.uniform(arm.minimum[free], arm.maximum[free], (options.targets, len(free))))
+            drawn = arm.complete(
+                rng.uniform(arm.minimum[independent], arm.maximum[independent], (options.targets, len(independent)))
+            )
             joints = np.concatenate((joints, drawn[((drawn >= arm.minimum) & (drawn <= arm.maximum)).all(axis=1)]))
-        joints = joints[:options.targets]
+        joints = joints[: options.targets]
         target = poses(arm, joints)
         closed_form(arm, target, joints)
-        compared(arm, target[:options.compared])
+        compared(arm, target[: options.compared])
 
 
 if __name__ == "__main__":

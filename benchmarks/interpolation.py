@@ -1,6 +1,6 @@
 """What a controller makes of the samples: straight lines and cubic splines against the limits of the joints.
 
-    python benchmarks/interpolation.py --rates 100 1000
+python benchmarks/interpolation.py --rates 100 1000
 """
 
 from __future__ import annotations
@@ -40,13 +40,17 @@ def figures(trajectory: Trajectory) -> str:
     jump = np.abs(np.diff(positions, n=2, axis=0)).max(axis=0) * trajectory.rate_hz
     spline = CubicSpline(times, positions, bc_type="clamped")
     fine = (np.arange((len(times) - 1) * _PLACES) + 0.5) / _PLACES / trajectory.rate_hz
-    shares = [float((np.abs(spline(fine, order)).max(axis=0) / limit).max())
-              for order, limit in enumerate(limits, start=1)]
+    shares = [
+        float((np.abs(spline(fine, order)).max(axis=0) / limit).max()) for order, limit in enumerate(limits, start=1)
+    ]
     lines = np.column_stack([np.interp(fine, times, column) for column in positions.T])
-    return (f"straight lines: speed jumps by {jump.max():.1f} deg/s, acceleration over a step "
-            f"{(jump * trajectory.rate_hz / limits[1]).max():.2f} of its limit; off the spline by "
-            f"{np.abs(spline(fine) - lines).max():.4f} deg; cubic spline: velocity, acceleration, jerk "
-            + ", ".join(f"{share:.2f}" for share in shares) + " of their limits")
+    return (
+        f"straight lines: speed jumps by {jump.max():.1f} deg/s, acceleration over a step "
+        f"{(jump * trajectory.rate_hz / limits[1]).max():.2f} of its limit; off the spline by "
+        f"{np.abs(spline(fine) - lines).max():.4f} deg; cubic spline: velocity, acceleration, jerk "
+        + ", ".join(f"{share:.2f}" for share in shares)
+        + " of their limits"
+    )
 
 
 if __name__ == "__main__":

@@ -42,8 +42,13 @@ def main() -> int:
     drawings = sorted((ROOT / "examples").glob("*.svg"))
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(options.at_once) as pool:
         cases = list(product(drawings, arms, METHODS))
-        digests = dict(zip((f"{drawing.name} {arm} {method}" for drawing, arm, method in cases),
-                           pool.map(lambda case: digest_of(*case, Path(folder)), cases), strict=True))
+        digests = dict(
+            zip(
+                (f"{drawing.name} {arm} {method}" for drawing, arm, method in cases),
+                pool.map(lambda case: digest_of(*case, Path(folder)), cases),
+                strict=True,
+            )
+        )
     if not options.check:
         options.digests.write_text(json.dumps(digests, indent=1) + "\n")
         print(f"wrote {options.digests}: {len(digests)} trajectories")

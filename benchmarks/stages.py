@@ -17,15 +17,22 @@ from functools import wraps
 from pathlib import Path
 from typing import Any
 
-from planner import pipeline, portions
+from planner import pipeline
 from planner.errors import PlannerError
+from planner.execution import work_chunks
 from planner.settings import Method, PlanSettings
 from planner.trajectory import write_trajectory
 
 STAGES = {
-    "read_drawing": "read", "flatten_all": "flatten", "join_strokes": "join", "order_strokes": "order",
-    "smooth_paths": "smooth", "joint_paths": "postures", "minimum_time": "timing", "motions": "check limits",
-    "plan_hops": "hops",
+    "read_drawing": "read",
+    "flatten_all": "flatten",
+    "join_strokes": "join",
+    "order_strokes": "order",
+    "smooth_paths": "smooth",
+    "joint_paths": "postures",
+    "minimum_time": "timing",
+    "motions": "check limits",
+    "plan_travel_moves": "hops",
 }
 
 
@@ -37,6 +44,7 @@ def _counted(function: Callable[..., Any], stage: str, spent: Counter[str]) -> C
             return function(*arguments, **options)
         finally:
             spent[stage] += time.perf_counter() - began
+
     return run
 
 
@@ -59,7 +67,7 @@ def main() -> None:
     order = pipeline.order_strokes
     pipeline.order_strokes = ordered
     for name, stage in STAGES.items():
-        module = pipeline if hasattr(pipeline, name) else portions
+        module = pipeline if hasattr(pipeline, name) else work_chunks
         setattr(module, name, _counted(getattr(module, name), stage, spent))
     drawings = sorted(options.folder.glob("*.svg"))
     if not drawings:

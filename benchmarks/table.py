@@ -20,7 +20,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks.targets import copp_socp, postures, redundancy, scale, smooth, speed, whole
+from benchmarks.targets import configurations, copp_socp, redundancy, scale, smooth, speed, whole
 from benchmarks.targets.row import Row, markdown
 from benchmarks.targets.strokes import drawings
 from planner.errors import PlannerError
@@ -34,12 +34,12 @@ MEASURES: dict[str, Measure] = {
     "optimum": lambda folder, _, settings: smooth.against_optimum(folder, settings),
     "copp": lambda _, __, settings: copp_socp.against_copp(settings),
     "stopping": lambda folder, _, settings: whole.limits_and_stopping(folder, settings),
-    "dls": lambda _, drawing, settings: postures.against_dls(drawing, settings),
+    "dls": lambda _, drawing, settings: configurations.against_dls(drawing, settings),
     "redundancy": lambda _, drawing, settings: redundancy.against_brute_force(drawing, settings),
-    "limits": lambda _, drawing, settings: postures.limits_of_narrow_arms(drawing, settings),
+    "limits": lambda _, drawing, settings: configurations.limits_of_narrow_arms(drawing, settings),
     "phases": lambda folder, _, settings: whole.phases_and_order(folder, settings),
     "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),
-    "postures": lambda _, drawing, settings: speed.postures(drawing, settings),
+    "postures": lambda _, drawing, settings: speed.configurations(drawing, settings),
     "end-to-end": lambda _, drawing, settings: speed.end_to_end(drawing, settings),
     "million-points": lambda _, drawing, settings: scale.many_strokes(drawing, settings),
     "long-stroke": lambda _, __, settings: scale.one_stroke(settings),
@@ -55,8 +55,10 @@ def machine() -> str:
             versions.append(f"{library} {version(library)}")
         except PackageNotFoundError:
             versions.append(f"no {library}")
-    return (f"{_processor()}, {os.cpu_count()} cores; {platform.system()}, Python {platform.python_version()}; "
-            + ", ".join(versions))
+    return (
+        f"{_processor()}, {os.cpu_count()} cores; {platform.system()}, Python {platform.python_version()}; "
+        + ", ".join(versions)
+    )
 
 
 def _processor() -> str:
@@ -88,11 +90,26 @@ def main() -> None:
         except PlannerError as error:
             measured = [Row(name, "", str(error))]
         rows += measured
-        print(f"{name}: {time.perf_counter() - began:.1f} s", *(row.markdown() for row in measured), sep="\n",
-              file=sys.stderr, flush=True)
-    text = "\n".join(["# Benchmarks", "", f"{datetime.now(UTC):%Y-%m-%d}. {machine()}.", "",
-                      f"Arm {settings.arm}, {len(found)} drawings, tolerance {settings.tolerance_mm:g} mm, pen at most"
-                      f" {settings.speed_mm_s:g} mm/s. Made by `python benchmarks/table.py`.", "", markdown(rows), ""])
+        print(
+            f"{name}: {time.perf_counter() - began:.1f} s",
+            *(row.markdown() for row in measured),
+            sep="\n",
+            file=sys.stderr,
+            flush=True,
+        )
+    text = "\n".join(
+        [
+            "# Benchmarks",
+            "",
+            f"{datetime.now(UTC):%Y-%m-%d}. {machine()}.",
+            "",
+            f"Arm {settings.arm}, {len(found)} drawings, tolerance {settings.tolerance_mm:g} mm, pen at most"
+            f" {settings.speed_mm_s:g} mm/s. Made by `python benchmarks/table.py`.",
+            "",
+            markdown(rows),
+            "",
+        ]
+    )
     if options.output is None:
         print(text)
     else:

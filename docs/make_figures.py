@@ -2,7 +2,7 @@
 
     python docs/make_figures.py [NAME ...]
 
-`postures_tradeoff.png` is of `benchmarks/tradeoff.py`.
+`configurations_tradeoff.png` is of `benchmarks/tradeoff.py`.
 """
 
 from __future__ import annotations

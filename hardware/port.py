@@ -43,9 +43,16 @@ class Line:
     def open(self, usual_baud: int) -> Port:
         """An open port at `baud`, or at the one that is usual for the controller. Errors: HardwareError."""
         try:
-            return Port(self.name, serial.serial_for_url(
-                self.name, baudrate=self.baud or usual_baud, timeout=0.0, exclusive=True,
-                write_timeout=None if self.name.startswith(_WITHOUT_WRITE_TIMEOUT) else _WRITE_TIMEOUT_S))
+            return Port(
+                self.name,
+                serial.serial_for_url(
+                    self.name,
+                    baudrate=self.baud or usual_baud,
+                    timeout=0.0,
+                    exclusive=True,
+                    write_timeout=None if self.name.startswith(_WITHOUT_WRITE_TIMEOUT) else _WRITE_TIMEOUT_S,
+                ),
+            )
         except _REFUSALS as error:
             raise HardwareError(f"{self.name}: {_why_not(self.name, error)}") from error
 
@@ -90,11 +97,14 @@ class Port:
         try:
             yield
         except serial.SerialTimeoutException as error:
-            raise HardwareError(f"{self.name}: the controller takes no more bytes; is it powered, and does the line "
-                                "need another --baud?") from error
+            raise HardwareError(
+                f"{self.name}: the controller takes no more bytes; is it powered, and does the line "
+                "need another --baud?"
+            ) from error
         except _FAILURES as error:
-            raise HardwareError(f"{self.name}: the line failed ({_reason(error)}); check the cable and the power of "
-                                "the controller") from error
+            raise HardwareError(
+                f"{self.name}: the line failed ({_reason(error)}); check the cable and the power of the controller"
+            ) from error
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,9 +118,14 @@ class PluggedIn:
 
 def plugged_in() -> list[PluggedIn]:
     """The serial devices of this computer, by name."""
-    return [PluggedIn(port.device, port.description if port.description != "n/a" else "",
-                      None if port.vid is None or port.pid is None else (port.vid, port.pid))
-            for port in sorted(list_ports.comports())]
+    return [
+        PluggedIn(
+            port.device,
+            port.description if port.description != "n/a" else "",
+            None if port.vid is None or port.pid is None else (port.vid, port.pid),
+        )
+        for port in sorted(list_ports.comports())
+    ]
 
 
 def _why_not(name: str, error: Exception) -> str:

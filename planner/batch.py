@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from planner.errors import OutputError, PlannerError, UsageError
+from planner.execution.workers import ALONE, Workers, executor_of
 from planner.pipeline import plan
 from planner.settings import PlanSettings
 from planner.summary import PlanSummary
 from planner.trajectory import write_trajectory
-from planner.workers import ALONE, Workers, crew_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +56,8 @@ def jobs_of(folder: Path, out_folder: Path, settings: PlanSettings) -> list[Job]
 def plan_all(jobs: Sequence[Job], workers: Workers) -> Iterator[Outcome]:
     """Plan and write all drawings, at most one a worker at a time; outcomes come in the order of the jobs. A
     cluster has to see the same files under the same names."""
-    with crew_of(workers if len(jobs) > 1 else ALONE) as crew:
-        yield from crew(_planned, jobs)
+    with executor_of(workers if len(jobs) > 1 else ALONE) as executor:
+        yield from executor(_planned, jobs)
 
 
 def _planned(job: Job) -> Outcome:

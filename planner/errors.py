@@ -43,8 +43,9 @@ class UnknownArm(PlannerError):
 
     def __init__(self, name: str, known: Sequence[str]) -> None:
         self.name, self.known = name, tuple(known)
-        super().__init__(f"unknown arm '{name}'; known arms: {', '.join(self.known)}"
-                         " (or give the path of a .toml file)")
+        super().__init__(
+            f"unknown arm '{name}'; known arms: {', '.join(self.known)} (or give the path of a .toml file)"
+        )
 
 
 class TrajectoryFileError(PlannerError):
@@ -76,15 +77,23 @@ class TargetOutOfReach(PlanError):
     `joint` and `limit` name the first limit in the way (None where geometry alone forbids it).
     """
 
-    def __init__(self, stroke: int, point: int, position_mm: Sequence[float], reason: str,
-                 joint: str | None = None, limit: str | None = None) -> None:
+    def __init__(
+        self,
+        stroke: int,
+        point: int,
+        position_mm: Sequence[float],
+        reason: str,
+        joint: str | None = None,
+        limit: str | None = None,
+    ) -> None:
         self.stroke, self.point, self.reason = stroke, point, reason
         self.position_mm = tuple(float(value) for value in position_mm)
         self.joint, self.limit = joint, limit
         place = ", ".join(f"{value:.1f}" for value in self.position_mm)
         super().__init__(
             f"stroke {stroke}, point {point} at ({place}) mm cannot be reached: {reason}"
-            " (make the drawing smaller, move it, or use --skip-unreachable)")
+            " (make the drawing smaller, move it, or use --skip-unreachable)"
+        )
 
 
 class LinksCollide(PlanError):
@@ -93,8 +102,10 @@ class LinksCollide(PlanError):
 
     def __init__(self, stroke: int, links: tuple[str, str], clearance_mm: float, reason: str) -> None:
         self.stroke, self.links, self.clearance_mm = stroke, links, clearance_mm
-        super().__init__(f"on the pen-up move before stroke {stroke} {reason}; try another --method, a smaller --lift,"
-                         " a larger --margin, or --skip-unreachable")
+        super().__init__(
+            f"on the pen-up move before stroke {stroke} {reason}; try another --method, a smaller --lift,"
+            " a larger --margin, or --skip-unreachable"
+        )
 
 
 class TargetBeyondReach(PlanError):

@@ -87,9 +87,15 @@ class Head:
         ]
         if placement.canvas_mm is not None:
             entries.append(("canvas_mm", " ".join(map(_shortest, placement.canvas_mm))))
-        entries += [(key, _shortest(value)) for key, value in (
-            ("margin_mm", placement.margin_mm), ("scale", placement.scale), ("rotate_deg", placement.rotate_deg))
-            if value is not None]
+        entries += [
+            (key, _shortest(value))
+            for key, value in (
+                ("margin_mm", placement.margin_mm),
+                ("scale", placement.scale),
+                ("rotate_deg", placement.rotate_deg),
+            )
+            if value is not None
+        ]
         if placement.mirror:
             entries.append(("mirror", "yes"))
         if self.left_out != NOTHING_LEFT_OUT:
@@ -116,19 +122,30 @@ def read_head(name: str, file: IO[str]) -> tuple[Head, str, int]:
         raise TrajectoryFileError(name, 1, "does not begin as a trajectory (no '# trajectory: 1' line)")
     if version != str(FORMAT_VERSION):
         raise TrajectoryFileError(
-            name, version_line, f"is of format '{shown(version)}'; this planner reads format {FORMAT_VERSION}")
+            name, version_line, f"is of format '{shown(version)}'; this planner reads format {FORMAT_VERSION}"
+        )
     rate_hz = _numbers(name, found, "rate_hz", 1)[0]
     if not _LOWEST_RATE_HZ <= rate_hz <= _HIGHEST_RATE_HZ:
         raise TrajectoryFileError(
-            name, found["rate_hz"][1],
-            f"rate_hz is {rate_hz:g}; it has to be from {_LOWEST_RATE_HZ:g} to {_HIGHEST_RATE_HZ:g}")
+            name,
+            found["rate_hz"][1],
+            f"rate_hz is {rate_hz:g}; it has to be from {_LOWEST_RATE_HZ:g} to {_HIGHEST_RATE_HZ:g}",
+        )
     duration_s = _numbers(name, found, "duration_s", 1)[0]
     a, b, c, d, e, f = _numbers(name, found, "svg_to_arm_mm", 6)
     if not line:
         raise TrajectoryFileError(name, max(number - 1, 1), "ends before its column names")
     texts = {key: value for key, (value, _) in found.items()}
-    head = Head(texts.get("arm", ""), texts.get("drawing", ""), texts.get("method", ""), rate_hz, duration_s,
-                (a, b, c, d, e, f), _placement(name, found), _left_out(name, found))
+    head = Head(
+        texts.get("arm", ""),
+        texts.get("drawing", ""),
+        texts.get("method", ""),
+        rate_hz,
+        duration_s,
+        (a, b, c, d, e, f),
+        _placement(name, found),
+        _left_out(name, found),
+    )
     return head, line, number
 
 
@@ -138,7 +155,8 @@ def _placement(name: str, found: Mapping[str, tuple[str, int]]) -> Placement:
         near, far, right, left = _numbers(name, found, "canvas_mm", 4)
         canvas_mm = near, far, right, left
     margin_mm, scale, rotate_deg = (
-        _numbers(name, found, key, 1)[0] if key in found else None for key in ("margin_mm", "scale", "rotate_deg"))
+        _numbers(name, found, key, 1)[0] if key in found else None for key in ("margin_mm", "scale", "rotate_deg")
+    )
     mirror, line = found.get("mirror", ("no", None))
     if mirror not in ("yes", "no"):
         raise TrajectoryFileError(name, line, f"'# mirror:' is '{shown(mirror)}'; wanted yes or no")
@@ -146,13 +164,19 @@ def _placement(name: str, found: Mapping[str, tuple[str, int]]) -> Placement:
 
 
 def _left_out(name: str, found: Mapping[str, tuple[str, int]]) -> LeftOut:
-    length_mm, taps = (_numbers(name, found, key, 1)[0] if key in found else 0.0
-                       for key in ("left_out_mm", "left_out_taps"))
-    for key, value, is_sound in (("left_out_mm", length_mm, length_mm >= 0),
-                                 ("left_out_taps", taps, taps >= 0 and taps == int(taps))):
+    length_mm, taps = (
+        _numbers(name, found, key, 1)[0] if key in found else 0.0 for key in ("left_out_mm", "left_out_taps")
+    )
+    for key, value, is_sound in (
+        ("left_out_mm", length_mm, length_mm >= 0),
+        ("left_out_taps", taps, taps >= 0 and taps == int(taps)),
+    ):
         if not is_sound:
-            raise TrajectoryFileError(name, found[key][1], f"'# {key}:' is {value:g}; less than nothing, or a part of"
-                                                           " a tap, cannot be left out")
+            raise TrajectoryFileError(
+                name,
+                found[key][1],
+                f"'# {key}:' is {value:g}; less than nothing, or a part of a tap, cannot be left out",
+            )
     return LeftOut(length_mm, int(taps))
 
 

@@ -35,7 +35,9 @@ def phases_of(trajectory: Trajectory, tip_mm: FloatArray, clearance_mm: float) -
     low = (tip_mm[:-1, 2] + tip_mm[1:, 2]) / 2 < clearance_mm
     found: IntArray = np.select(
         [rests, draws, low & (steps[:, 2] > 0), low & (steps[:, 2] < 0)],
-        [Phase.RESTING, Phase.DRAWING, Phase.LIFTING, Phase.LOWERING], Phase.TRAVELLING)
+        [Phase.RESTING, Phase.DRAWING, Phase.LIFTING, Phase.LOWERING],
+        Phase.TRAVELLING,
+    )
     return found
 
 

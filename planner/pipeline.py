@@ -13,10 +13,6 @@ import numpy as np
 from planner.affine import compose, rotation
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
-from planner.arms.canvas import canvas_of
-from planner.arms.kinematics import kinematics_of
-from planner.arms.posture_field import PostureField, posture_sheets
-from planner.arms.travel_embedding import travel_embedding
 from planner.arrays import BoolArray, FloatArray
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
@@ -25,39 +21,43 @@ from planner.drawing.join import join_strokes
 from planner.drawing.order import Metric, order_strokes
 from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
+from planner.execution.work_chunks import (
+    CHORD_SHARE,
+    SAMPLE_SHARE,
+    SMOOTH_SHARE,
+    PlanContext,
+    TimedStroke,
+    make_ready,
+    pieces_of,
+    planned_travel_moves,
+    stroke_chunks,
+    timed_strokes,
+    travel_chunks,
+)
+from planner.execution.workers import ALONE, ChunkExecutor, Workers, executor_of
 from planner.head import LeftOut, Placement
-from planner.inverse_kinematics.stroke_postures import Obstacle
+from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
+from planner.kinematics.chain import kinematics_of
 from planner.phases import phases_of
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
 from planner.placement.pieces import Piece
 from planner.placement.split import split_strokes
-from planner.portions import (
-    BULGE_SHARE,
-    SAMPLE_SHARE,
-    SMOOTH_SHARE,
-    Kit,
-    TimedStroke,
-    hop_portions,
-    make_ready,
-    pieces_of,
-    planned_hops,
-    stroke_portions,
-    timed_strokes,
-)
+from planner.redundancy.configuration_map import ConfigurationMap, configuration_branches
 from planner.settings import Method, PlanSettings
 from planner.stroke_figures import stroke_figures
 from planner.summary import PhaseTimes, PlanSummary
-from planner.timing.hops import Hop, HopRules
 from planner.timing.length_bound import require_bounded
 from planner.timing.limits import Limits
 from planner.trajectory import TRAVELLING, Trajectory
-from planner.workers import ALONE, Crew, Workers, crew_of
+from planner.travel.travel_moves import TravelMove, TravelRules
+from planner.travel.travel_time_metric import travel_time_metric
+from planner.workspace.canvas import canvas_of
 
 Report = Callable[[str, int, int], None]
 """Told the stage, how much of it is done, and how much there is."""
 
-_FLATTEN_SHARE = _JOIN_SHARE = 0.5 * (1.0 - SMOOTH_SHARE - SAMPLE_SHARE - BULGE_SHARE)
+_FLATTEN_SHARE = _JOIN_SHARE = 0.5 * (1.0 - SMOOTH_SHARE - SAMPLE_SHARE - CHORD_SHARE)
 """Shares of the tolerance that are left for chords in the place of curves, and for gaps that are closed."""
 
 _SMALL_BYTES = 60_000
@@ -78,10 +78,10 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
     """Plan one drawing. The result is the same whoever does the work. Errors: PlannerError, before any result
     exists."""
     report("reading", 0, 1)
-    kit = Kit.of(load_arm(settings.arm), settings)
-    arm = kit.arm
+    context = PlanContext.of(load_arm(settings.arm), settings)
+    arm = context.arm
     lift_mm = _lift_mm(arm, settings)
-    with crew_of(_worth_hiring(workers, drawing_file), partial(make_ready, kit)) as crew:
+    with executor_of(_worth_hiring(workers, drawing_file), partial(make_ready, context)) as executor:
         drawing = read_drawing(drawing_file, partial(report, "reading"))
         report("placing", 0, 1)
         svg_to_arm, placement, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
@@ -90,11 +90,13 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
         report("ordering strokes", 0, 1)
         strokes = _ordered(strokes, arm, settings, lift_mm)
         _require_bounded(strokes, arm, settings, lift_mm)
-        timed, strokes, lost, notes = _timed_strokes(crew, kit, strokes, report)
-        timed, strokes, hops, more_lost, more_notes = _with_hops(crew, kit, timed, strokes, lift_mm, report)
+        timed, strokes, lost, notes = _timed_strokes(executor, context, strokes, report)
+        timed, strokes, moves, more_lost, more_notes = _with_travel_moves(
+            executor, context, timed, strokes, lift_mm, report
+        )
     warnings += notes + more_notes
     left_out += lost + more_lost
-    trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, placement, left_out, timed, hops)
+    trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, placement, left_out, timed, moves)
     _verify(trajectory, arm)
     return Plan(trajectory, _summary(trajectory, arm, timed, scale, size_mm, warnings), drawing)
 
@@ -118,16 +120,18 @@ def _lift_mm(arm: Arm, settings: PlanSettings) -> float:
 
 def _ordered(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> list[FloatArray]:
     canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
-    return order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_embedding(arm), exponent=1 / 3))
+    return order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_time_metric(arm), exponent=1 / 3))
 
 
 def _require_bounded(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> None:
     """Errors: UsageError where speeds and rests alone, whatever the arm, make a plan too long."""
     drawn_mm = sum(float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in strokes)
     lowered_mm = len(strokes) * arm.pen.clearance_mm + lift_mm
-    parts = [(drawn_mm / settings.speed_mm_s, "drawing", "choose a higher --speed"),
-             (lowered_mm / settings.lowering_speed_mm_s, "lowering the pen", "choose a higher --lowering-speed"),
-             (len(strokes) * settings.dwell_s, "resting before strokes", "choose a shorter --dwell")]
+    parts = [
+        (drawn_mm / settings.speed_mm_s, "drawing", "choose a higher --speed"),
+        (lowered_mm / settings.lowering_speed_mm_s, "lowering the pen", "choose a higher --lowering-speed"),
+        (len(strokes) * settings.dwell_s, "resting before strokes", "choose a shorter --dwell"),
+    ]
     longest_s, what, advice = max(parts)
     require_bounded(longest_s, settings.rate_hz, what, f"{advice}, or a lower --rate")
     whole_s = sum(seconds for seconds, _, _ in parts)
@@ -143,27 +147,31 @@ def _worth_hiring(workers: Workers, drawing_file: Path) -> Workers:
     return ALONE if is_small and workers.cluster is None else workers
 
 
-def _placed(drawing: Drawing, arm: Arm, settings: PlanSettings, lift_mm: float
-            ) -> tuple[FloatArray, Placement, float, tuple[float, float]]:
+def _placed(
+    drawing: Drawing, arm: Arm, settings: PlanSettings, lift_mm: float
+) -> tuple[FloatArray, Placement, float, tuple[float, float]]:
     """The affine from SVG user units to arm millimetres, what is told of it, its scale against the page, and the size
     on paper."""
     canvas = canvas_of(arm, settings.canvas, lift_mm)
     turned = compose(rotation(settings.rotate_deg), drawing.user_to_page)
     low, high = extent(drawing.outlines, turned)
-    onto_arm = fit_to_canvas(low, high, canvas, margin_mm=settings.margin_mm, scale=settings.fit,
-                             may_exceed=settings.skip_unreachable)
+    onto_arm = fit_to_canvas(
+        low, high, canvas, margin_mm=settings.margin_mm, scale=settings.fit, may_exceed=settings.skip_unreachable
+    )
     scale = float(np.hypot(*onto_arm[:, 0]))
     width, height = scale * (high - low)
     # A drawing that keeps its size and may be cut is held within no rectangle.
     is_held = settings.fit or not settings.skip_unreachable
     sides = (canvas.near_mm, canvas.far_mm, canvas.right_mm, canvas.left_mm)
-    placement = Placement(sides if is_held else None, settings.margin_mm if is_held else None, scale,
-                          settings.rotate_deg)
+    placement = Placement(
+        sides if is_held else None, settings.margin_mm if is_held else None, scale, settings.rotate_deg
+    )
     return compose(onto_arm, turned), placement, scale, (float(width), float(height))
 
 
-def _strokes(drawing: Drawing, svg_to_arm: FloatArray, arm: Arm, settings: PlanSettings
-             ) -> tuple[list[FloatArray], LeftOut, list[str]]:
+def _strokes(
+    drawing: Drawing, svg_to_arm: FloatArray, arm: Arm, settings: PlanSettings
+) -> tuple[list[FloatArray], LeftOut, list[str]]:
     """Strokes (n, 2), arm mm, what was left out as out of reach, and what is to be said of them."""
     warnings = []
     left_out = LeftOut()
@@ -172,22 +180,25 @@ def _strokes(drawing: Drawing, svg_to_arm: FloatArray, arm: Arm, settings: PlanS
         warnings.append(f"not drawn as in the SVG: {counts}")
     strokes = flatten_all(drawing.outlines, svg_to_arm, _FLATTEN_SHARE * settings.tolerance_mm)
     strokes = join_strokes(strokes, _JOIN_SHARE * settings.tolerance_mm)
-    sheets = posture_sheets(arm, settings.weights)
+    branches = configuration_branches(arm, settings.weights)
     if settings.skip_unreachable:
         n_taps = _drawn(strokes).taps
         strokes, lost_mm, lost_whole = clip_strokes(
-            strokes, _in_reach(sheets), max(float(sheet.radii_mm[-1]) for sheet in sheets))
+            strokes, _in_reach(branches), max(float(branch.radii_mm[-1]) for branch in branches)
+        )
         left_out = LeftOut(lost_mm, n_taps - _drawn(strokes).taps)
         if lost_mm or lost_whole:
             whole = counted(lost_whole - left_out.taps, "stroke") + " and " + counted(left_out.taps, "tap")
             warnings.append(f"out of reach and left out: {lost_mm:.1f} mm of line; {whole} whole")
         if not strokes:
             raise PlanError("nothing of the drawing is within reach")
-    if len(sheets) > 1 and settings.method is Method.PATH:
-        strokes, n_split, n_more = split_strokes(strokes, [sheet.reaches for sheet in sheets])
+    if len(branches) > 1 and settings.method is Method.PATH:
+        strokes, n_split, n_more = split_strokes(strokes, [branch.reaches for branch in branches])
         if n_split:
-            warnings.append(f"split, as no one branch of postures reaches all of each: {counted(n_split, 'stroke')},"
-                            f" with {counted(n_more, 'more pen lift')}")
+            warnings.append(
+                f"split, as no one branch reaches all of each: {counted(n_split, 'stroke')},"
+                f" with {counted(n_more, 'more pen lift')}"
+            )
     return strokes, left_out, warnings
 
 
@@ -197,69 +208,80 @@ def _drawn(strokes: Sequence[FloatArray]) -> LeftOut:
     return LeftOut(sum(lengths), len(strokes) - len(lengths))
 
 
-def _in_reach(sheets: Sequence[PostureField]) -> Callable[[FloatArray], BoolArray]:
+def _in_reach(branches: Sequence[ConfigurationMap]) -> Callable[[FloatArray], BoolArray]:
     def reachable(points_mm: FloatArray) -> BoolArray:
-        reached: BoolArray = np.any([sheet.reaches(points_mm) for sheet in sheets], axis=0)
+        reached: BoolArray = np.any([branch.reaches(points_mm) for branch in branches], axis=0)
         return reached
 
     return reachable
 
 
-def _timed_strokes(crew: Crew, kit: Kit, strokes: Sequence[FloatArray], report: Report
-                   ) -> tuple[list[TimedStroke], list[FloatArray], LeftOut, list[str]]:
+def _timed_strokes(
+    executor: ChunkExecutor, context: PlanContext, strokes: Sequence[FloatArray], report: Report
+) -> tuple[list[TimedStroke], list[FloatArray], LeftOut, list[str]]:
     """Joint samples of all strokes that can be drawn, these strokes, and what is to be said of them; those that cannot
     are left out if the user wants so."""
-    settings = kit.settings
-    pieces = pieces_of(kit, strokes)
-    results = _results(crew, kit, list(chain.from_iterable(pieces)), report)
+    settings = context.settings
+    pieces = pieces_of(context, strokes)
+    results = _results(executor, context, list(chain.from_iterable(pieces)), report)
     timed: list[TimedStroke] = []
     kept: list[FloatArray] = []
     lost: list[FloatArray] = []
     for index, stroke in enumerate(strokes):
         made = list(islice(results, len(pieces[index])))
-        obstacles = [result for result in made if isinstance(result, Obstacle)]
-        if not obstacles:
+        infeasible_paths = [result for result in made if isinstance(result, InfeasiblePath)]
+        if not infeasible_paths:
             timed.append(TimedStroke.of([result for result in made if isinstance(result, TimedStroke)]))
             kept.append(stroke)
         elif settings.skip_unreachable:
             lost.append(stroke)
         else:
-            first = obstacles[0]
+            first = infeasible_paths[0]
             nearest = int(np.argmin(np.hypot(*(stroke - first.tip_mm).T)))
             raise TargetOutOfReach(index, nearest, first.tip_mm, first.reason, first.joint, first.limit)
     if not timed:
         raise PlanError("nothing of the drawing can be drawn within the joint limits")
-    unsettled = sum(not stroke.settled for stroke in timed)
+    unconverged = sum(not stroke.converged for stroke in timed)
     loose = sum(not stroke.held for stroke in timed)
-    counts = [(len(lost), f"left out whole, as method {settings.method} cannot draw them"),
-              (unsettled, "timed by the fallback, slower than the least time"),
-              (loose, "off the drawing by more than the tolerance, however slow; try a larger --tolerance")]
+    counts = [
+        (len(lost), f"left out whole, as method {settings.method} cannot draw them"),
+        (unconverged, "timed by the fallback, slower than the least time"),
+        (loose, "off the drawing by more than the tolerance, however slow; try a larger --tolerance"),
+    ]
     return timed, kept, _drawn(lost), [f"{what}: {counted(count, 'stroke')}" for count, what in counts if count]
 
 
-def _results(crew: Crew, kit: Kit, pieces: Sequence[Piece], report: Report) -> Iterator[TimedStroke | Obstacle]:
+def _results(
+    executor: ChunkExecutor, context: PlanContext, pieces: Sequence[Piece], report: Report
+) -> Iterator[TimedStroke | InfeasiblePath]:
     """What became of each piece, as soon as it is known."""
     done = 0
     report("drawing motions", 0, len(pieces))
-    for results in crew(timed_strokes, stroke_portions(kit, pieces)):
+    for results in executor(timed_strokes, stroke_chunks(context, pieces)):
         done += len(results)
         report("drawing motions", done, len(pieces))
         yield from results
 
 
-def _with_hops(crew: Crew, kit: Kit, timed: list[TimedStroke], strokes: list[FloatArray], lift_mm: float,
-               report: Report) -> tuple[list[TimedStroke], list[FloatArray], list[Hop], LeftOut, list[str]]:
-    """The strokes, the hops around them, and what is to be said of them. Strokes that the arm cannot get to, or away
-    from, with its links apart are left out if the user wants so."""
+def _with_travel_moves(
+    executor: ChunkExecutor,
+    context: PlanContext,
+    timed: list[TimedStroke],
+    strokes: list[FloatArray],
+    lift_mm: float,
+    report: Report,
+) -> tuple[list[TimedStroke], list[FloatArray], list[TravelMove], LeftOut, list[str]]:
+    """The strokes, the travel moves around them, and what is to be said of them. Strokes that the arm cannot get to, or
+    away from, with its links apart are left out if the user wants so."""
     lost: list[FloatArray] = []
     while True:
-        hops = _hops(crew, kit, timed, lift_mm, report)
-        blocked = {_end_that_collides(index, hop, len(timed)) for index, hop in enumerate(hops) if hop.collision}
+        moves = _travel_moves(executor, context, timed, lift_mm, report)
+        blocked = {_end_that_collides(index, move, len(timed)) for index, move in enumerate(moves) if move.collision}
         if not blocked:
             notes = [f"left out whole, as links would collide before or after them: {counted(len(lost), 'stroke')}"]
-            return timed, strokes, hops, _drawn(lost), notes if lost else []
-        if not kit.settings.skip_unreachable:
-            index, collision = next((index, hop.collision) for index, hop in enumerate(hops) if hop.collision)
+            return timed, strokes, moves, _drawn(lost), notes if lost else []
+        if not context.settings.skip_unreachable:
+            index, collision = next((index, move.collision) for index, move in enumerate(moves) if move.collision)
             raise LinksCollide(index, collision.links, collision.clearance_mm, str(collision))
         lost += [strokes[index] for index in sorted(blocked)]
         free = [index for index in range(len(timed)) if index not in blocked]
@@ -268,42 +290,58 @@ def _with_hops(crew: Crew, kit: Kit, timed: list[TimedStroke], strokes: list[Flo
             raise PlanError("nothing of the drawing can be drawn with the arm's links apart")
 
 
-def _end_that_collides(index: int, hop: Hop, n_strokes: int) -> int:
-    """The stroke, before or after the hop of that index, that is nearer in time to where links collide."""
-    leaves = hop.collision is not None and 2 * hop.collision.posture < len(hop.joints)
+def _end_that_collides(index: int, move: TravelMove, n_strokes: int) -> int:
+    """The stroke, before or after the travel move of that index, that is nearer in time to where links collide."""
+    leaves = move.collision is not None and 2 * move.collision.configuration < len(move.joints)
     return max(index - 1, 0) if leaves or index == n_strokes else index
 
 
-def _hops(crew: Crew, kit: Kit, timed: Sequence[TimedStroke], lift_mm: float, report: Report) -> list[Hop]:
+def _travel_moves(
+    executor: ChunkExecutor, context: PlanContext, timed: Sequence[TimedStroke], lift_mm: float, report: Report
+) -> list[TravelMove]:
     """The pen-up moves before, between and after the strokes."""
-    arm, settings = kit.arm, kit.settings
-    rules = HopRules(arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz,
-                     settings.tolerance_mm)
+    arm, settings = context.arm, context.settings
+    rules = TravelRules(
+        arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz, settings.tolerance_mm
+    )
     leave = [None, *(stroke.last for stroke in timed)]
     meet = [*(stroke.first for stroke in timed), None]
-    hops: list[Hop] = []
-    for made in crew(planned_hops, hop_portions(kit, rules, leave, meet)):
-        for index, hop in enumerate(made, len(hops)):
-            if not hop.exact:
-                raise PlanError(f"the pen-up move before stroke {index} leaves the joint limits"
-                                f" of arm {arm.name}; try another --method, a smaller --lift or a larger --margin")
-        hops += made
-        report("travels", len(hops), len(leave))
-    return hops
+    moves: list[TravelMove] = []
+    for made in executor(planned_travel_moves, travel_chunks(context, rules, leave, meet)):
+        for index, move in enumerate(made, len(moves)):
+            if not move.exact:
+                raise PlanError(
+                    f"the pen-up move before stroke {index} leaves the joint limits"
+                    f" of arm {arm.name}; try another --method, a smaller --lift or a larger --margin"
+                )
+        moves += made
+        report("travels", len(moves), len(leave))
+    return moves
 
 
-def _assembled(arm: Arm, drawing_file: Path, settings: PlanSettings, svg_to_arm: FloatArray, placement: Placement,
-               left_out: LeftOut, timed: Sequence[TimedStroke], hops: Sequence[Hop]) -> Trajectory:
-    """All samples in order. Hops and strokes share the samples where they meet; these count as drawn."""
-    n_samples = (sum(stroke.dwell_samples + len(stroke.joints) for stroke in timed)
-                 + sum(len(hop.joints) for hop in hops) - 2 * len(timed))
+def _assembled(
+    arm: Arm,
+    drawing_file: Path,
+    settings: PlanSettings,
+    svg_to_arm: FloatArray,
+    placement: Placement,
+    left_out: LeftOut,
+    timed: Sequence[TimedStroke],
+    moves: Sequence[TravelMove],
+) -> Trajectory:
+    """All samples in order. Travel moves and strokes share the samples where they meet; these count as drawn."""
+    n_samples = (
+        sum(stroke.dwell_samples + len(stroke.joints) for stroke in timed)
+        + sum(len(move.joints) for move in moves)
+        - 2 * len(timed)
+    )
     positions = np.empty((n_samples, len(arm.joints)))
     strokes = np.full(n_samples, TRAVELLING)
     end = 0
-    for index, hop in enumerate(hops):
-        begin, end = end, end + len(hop.joints) - (index > 0) - (index < len(timed))
+    for index, move in enumerate(moves):
+        begin, end = end, end + len(move.joints) - (index > 0) - (index < len(timed))
         first = 1 if index else 0
-        positions[begin:end] = arm.to_file_units(hop.joints[first:first + end - begin])
+        positions[begin:end] = arm.to_file_units(move.joints[first : first + end - begin])
         if index < len(timed):
             stroke = timed[index]
             begin, resting, end = end, end + stroke.dwell_samples, end + stroke.dwell_samples + len(stroke.joints)
@@ -312,33 +350,61 @@ def _assembled(arm: Arm, drawing_file: Path, settings: PlanSettings, svg_to_arm:
             positions[resting:end] = arm.to_file_units(stroke.joints)
     (a, c, e), (b, d, f) = svg_to_arm.tolist()
     return Trajectory(
-        arm=settings.arm, drawing=drawing_file.name, method=settings.method.value, rate_hz=settings.rate_hz,
-        columns=arm.column_names, positions=positions, pen=strokes != TRAVELLING, stroke=strokes,
-        svg_to_arm_mm=(a, b, c, d, e, f), placement=placement, left_out=left_out)
+        arm=settings.arm,
+        drawing=drawing_file.name,
+        method=settings.method.value,
+        rate_hz=settings.rate_hz,
+        columns=arm.column_names,
+        positions=positions,
+        pen=strokes != TRAVELLING,
+        stroke=strokes,
+        svg_to_arm_mm=(a, b, c, d, e, f),
+        placement=placement,
+        left_out=left_out,
+    )
 
 
 def _verify(trajectory: Trajectory, arm: Arm) -> None:
     """Every limit, once more, on the samples as they will be written."""
     limits, period_s = Limits.of(arm), 1 / trajectory.rate_hz
     slowing = max(  # blocks overlap by the three samples that a third difference looks back
-        limits.slowing_of(arm.from_file_units(trajectory.positions[begin:begin + _BLOCK_SAMPLES + 3]), period_s)
-        for begin in range(0, trajectory.n_samples, _BLOCK_SAMPLES))
+        limits.slowing_of(arm.from_file_units(trajectory.positions[begin : begin + _BLOCK_SAMPLES + 3]), period_s)
+        for begin in range(0, trajectory.n_samples, _BLOCK_SAMPLES)
+    )
     if not np.isfinite(trajectory.positions).all():
-        raise PlanError("the trajectory has positions that are no finite numbers: a defect of the planner, please"
-                        " report it with the drawing")
+        raise PlanError(
+            "the trajectory has positions that are no finite numbers: a defect of the planner, please"
+            " report it with the drawing"
+        )
     if slowing > 1 + 1e-6:
-        raise PlanError(f"the timing exceeds a joint limit by {100 * (slowing - 1):.3f} % of speed:"
-                        " a defect of the planner, please report it with the drawing")
+        raise PlanError(
+            f"the timing exceeds a joint limit by {100 * (slowing - 1):.3f} % of speed:"
+            " a defect of the planner, please report it with the drawing"
+        )
 
 
-def _summary(trajectory: Trajectory, arm: Arm, timed: Sequence[TimedStroke], scale: float,
-             size_mm: tuple[float, float], warnings: list[str]) -> PlanSummary:
-    tips_mm = kinematics_of(arm).tip_mm(kinematics_of(arm).free_of(arm.from_file_units(trajectory.positions)))
+def _summary(
+    trajectory: Trajectory,
+    arm: Arm,
+    timed: Sequence[TimedStroke],
+    scale: float,
+    size_mm: tuple[float, float],
+    warnings: list[str],
+) -> PlanSummary:
+    tips_mm = kinematics_of(arm).tip_mm(kinematics_of(arm).independent_of(arm.from_file_units(trajectory.positions)))
     phases = PhaseTimes.of(phases_of(trajectory, tips_mm, arm.pen.clearance_mm), trajectory.rate_hz)
     return PlanSummary(
-        n_strokes=len(timed), n_taps=sum(len(stroke.joints) == 1 for stroke in timed),
+        n_strokes=len(timed),
+        n_taps=sum(len(stroke.joints) == 1 for stroke in timed),
         drawn_mm=float(stroke_figures(trajectory, tips_mm).length_mm.sum()),
-        travelled_mm=float(sum(np.hypot(*(after.first.tip_mm - before.last.tip_mm))
-                               for before, after in pairwise(timed))),
-        size_mm=size_mm, scale=scale, phases=phases, duration_s=trajectory.duration_s,
-        n_samples=trajectory.n_samples, rate_hz=trajectory.rate_hz, warnings=warnings)
+        travelled_mm=float(
+            sum(np.hypot(*(after.first.tip_mm - before.last.tip_mm)) for before, after in pairwise(timed))
+        ),
+        size_mm=size_mm,
+        scale=scale,
+        phases=phases,
+        duration_s=trajectory.duration_s,
+        n_samples=trajectory.n_samples,
+        rate_hz=trajectory.rate_hz,
+        warnings=warnings,
+    )

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class Method(StrEnum):
-    """How postures are found for the points of a stroke."""
+    """How configurations are found for the points of a stroke."""
 
     PATH = "path"
     NLP = "nlp"
@@ -24,7 +24,7 @@ class CanvasKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class PostureWeights:
+class ConfigurationWeights:
     """What method `path` spends the arm's redundancy on; only the ratios of the weights count.
 
     time: little joint motion for a millimetre of pen; sensitivity: joint errors move the pen little across the
@@ -58,4 +58,4 @@ class PlanSettings:
     margin_mm: float = 5.0
     rotate_deg: float = 0.0
     skip_unreachable: bool = False
-    weights: PostureWeights = PostureWeights()
+    weights: ConfigurationWeights = ConfigurationWeights()

@@ -47,8 +47,9 @@ def first_controls(n_cells: IntArray, degree: int) -> IntArray:
     return indices
 
 
-def evaluate(controls: FloatArray, cell_controls: IntArray, fractions: FloatArray, degree: int,
-             derivative: int = 0) -> FloatArray:
+def evaluate(
+    controls: FloatArray, cell_controls: IntArray, fractions: FloatArray, degree: int, derivative: int = 0
+) -> FloatArray:
     """Values (n_cells, n_fractions, d) at the same fractions of every cell.
 
     controls: (n_controls, d); cell_controls: (n_cells,) from `first_controls`.
@@ -60,8 +61,9 @@ def evaluate(controls: FloatArray, cell_controls: IntArray, fractions: FloatArra
     return values
 
 
-def evaluate_at(controls: FloatArray, cell_controls: IntArray, fractions: FloatArray, degree: int,
-                derivative: int = 0) -> FloatArray:
+def evaluate_at(
+    controls: FloatArray, cell_controls: IntArray, fractions: FloatArray, degree: int, derivative: int = 0
+) -> FloatArray:
     """Values (n, d) at one fraction per row: fractions (n,), cell_controls (n,)."""
     table = weights(degree, fractions, derivative)
     values = np.zeros((len(cell_controls), controls.shape[1]))
@@ -70,13 +72,13 @@ def evaluate_at(controls: FloatArray, cell_controls: IntArray, fractions: FloatA
     return values
 
 
-def halved(controls: FloatArray, n_cells: IntArray, degree: int) -> FloatArray:
+def subdivided(controls: FloatArray, n_cells: IntArray, degree: int) -> FloatArray:
     """Control points (2 total cells + degree n_curves, d) of the same curves with every cell cut in two.
 
     controls: (total cells + degree n_curves, d) of curves laid end to end (Lane and Riesenfeld 1980: each new
     control point is a mean of old ones with binomial weights).
     """
-    mask = [comb(degree + 1, k) / 2 ** degree for k in range(degree + 2)]
+    mask = [comb(degree + 1, k) / 2**degree for k in range(degree + 2)]
     new_count = 2 * n_cells + degree
     index = within(new_count)
     first = np.repeat(starts_of(n_cells + degree)[:-1], new_count)
@@ -100,10 +102,10 @@ def interpolating(values: FloatArray, degree: int = 5) -> FloatArray:
     right = np.zeros((count, values.shape[1]))
     at_knot = weights(degree, np.zeros(1))[0, :degree]
     for knot in range(n_cells + 1):
-        rows[knot, knot:knot + degree] = at_knot
-    right[:n_cells + 1] = values
+        rows[knot, knot : knot + degree] = at_knot
+    right[: n_cells + 1] = values
     change = np.array([(-1) ** k * comb(degree + 1, k) for k in range(degree + 2)])
     half = (degree - 1) // 2
     for k, first in enumerate((*range(half), *range(count - degree - 1 - half, count - degree - 1))):
-        rows[n_cells + 1 + k, first:first + degree + 2] = change
+        rows[n_cells + 1 + k, first : first + degree + 2] = change
     return np.asarray(np.linalg.solve(rows, right), dtype=np.float64)

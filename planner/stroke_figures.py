@@ -31,8 +31,9 @@ class StrokeFigures:
     @property
     def mean_speed_mm_s(self) -> FloatArray:
         """Length by the time in which the pen moves, as for the whole drawing; 0 of a tap."""
-        mean: FloatArray = np.divide(self.length_mm, self.drawing_s, out=np.zeros_like(self.length_mm),
-                                     where=self.drawing_s > 0)
+        mean: FloatArray = np.divide(
+            self.length_mm, self.drawing_s, out=np.zeros_like(self.length_mm), where=self.drawing_s > 0
+        )
         return mean
 
     def lost_s(self, speed_mm_s: float) -> FloatArray:
@@ -48,10 +49,16 @@ def stroke_figures(trajectory: Trajectory, tip_mm: FloatArray) -> StrokeFigures:
     steps = np.zeros(len(drawn))
     within = np.diff(trajectory.stroke[drawn]) == 0
     steps[1:][within] = np.linalg.norm(np.diff(tip_mm[drawn, :2], axis=0)[within], axis=1)
-    length, top = ((np.add.reduceat(steps, first), np.maximum.reduceat(steps, first)) if len(drawn)
-                   else (np.zeros(0), np.zeros(0)))
+    length, top = (
+        (np.add.reduceat(steps, first), np.maximum.reduceat(steps, first)) if len(drawn) else (np.zeros(0), np.zeros(0))
+    )
     moves = steps * trajectory.rate_hz >= REST_MM_S
     moving = np.add.reduceat(moves.astype(np.int64), first) if len(drawn) else np.zeros(0)
-    return StrokeFigures(index, drawn[first] / trajectory.rate_hz, (n_samples - 1) / trajectory.rate_hz,
-                         moving / trajectory.rate_hz, length,
-                         top * trajectory.rate_hz)
+    return StrokeFigures(
+        index,
+        drawn[first] / trajectory.rate_hz,
+        (n_samples - 1) / trajectory.rate_hz,
+        moving / trajectory.rate_hz,
+        length,
+        top * trajectory.rate_hz,
+    )

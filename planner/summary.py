@@ -23,8 +23,13 @@ class PhaseTimes:
     def of(phases: IntArray, rate_hz: float) -> PhaseTimes:
         """Of the phases (n_samples - 1,) from sample to sample."""
         seconds = dict(zip(Phase, seconds_in(phases, rate_hz).tolist(), strict=True))
-        return PhaseTimes(seconds[Phase.DRAWING], seconds[Phase.LOWERING], seconds[Phase.LIFTING],
-                          seconds[Phase.TRAVELLING], seconds[Phase.RESTING])
+        return PhaseTimes(
+            seconds[Phase.DRAWING],
+            seconds[Phase.LOWERING],
+            seconds[Phase.LIFTING],
+            seconds[Phase.TRAVELLING],
+            seconds[Phase.RESTING],
+        )
 
     @property
     def total_s(self) -> float:
@@ -32,9 +37,17 @@ class PhaseTimes:
 
     def shares(self) -> list[tuple[str, float, float]]:
         """The phases that take time: name, seconds, and share of the whole."""
-        return [(name, seconds, seconds / self.total_s) for name, seconds in (
-            ("drawing", self.drawing_s), ("lowering", self.lowering_s), ("lifting", self.lifting_s),
-            ("travelling", self.travelling_s), ("resting", self.resting_s)) if seconds > 0]
+        return [
+            (name, seconds, seconds / self.total_s)
+            for name, seconds in (
+                ("drawing", self.drawing_s),
+                ("lowering", self.lowering_s),
+                ("lifting", self.lifting_s),
+                ("travelling", self.travelling_s),
+                ("resting", self.resting_s),
+            )
+            if seconds > 0
+        ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,8 +74,9 @@ class PlanSummary:
 
     def lines(self) -> list[str]:
         """A few lines to read."""
-        shares = ", ".join(f"{name} {seconds:.1f} s ({100 * share:.0f} %)"
-                           for name, seconds, share in self.phases.shares())
+        shares = ", ".join(
+            f"{name} {seconds:.1f} s ({100 * share:.0f} %)" for name, seconds, share in self.phases.shares()
+        )
         taps = f", {self.n_taps} of them {'a tap' if self.n_taps == 1 else 'taps'}" if self.n_taps else ""
         return [
             f"{counted(self.n_strokes, 'stroke')}{taps}: {self.drawn_mm / 1000:.2f} m drawn,"

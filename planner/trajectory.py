@@ -77,8 +77,16 @@ class Trajectory:
     @property
     def head(self) -> Head:
         """The comment lines of its file."""
-        return Head(self.arm, self.drawing, self.method, self.rate_hz, self.duration_s, self.svg_to_arm_mm,
-                    self.placement, self.left_out)
+        return Head(
+            self.arm,
+            self.drawing,
+            self.method,
+            self.rate_hz,
+            self.duration_s,
+            self.svg_to_arm_mm,
+            self.placement,
+            self.left_out,
+        )
 
     @property
     def n_samples(self) -> int:
@@ -178,9 +186,14 @@ def _write(trajectory: Trajectory, file: IO[str]) -> None:
     for start in range(0, trajectory.n_samples, _BLOCK_ROWS):
         block = slice(start, start + _BLOCK_ROWS)
         positions = trajectory.positions[block] + 0.0  # no "-0.000"
-        table = np.column_stack((
-            np.arange(start, start + len(positions)) / trajectory.rate_hz,
-            positions, trajectory.pen[block], trajectory.stroke[block]))
+        table = np.column_stack(
+            (
+                np.arange(start, start + len(positions)) / trajectory.rate_hz,
+                positions,
+                trajectory.pen[block],
+                trajectory.stroke[block],
+            )
+        )
         file.write((row * len(table)) % tuple(table.ravel().tolist()))
 
 
@@ -200,15 +213,27 @@ def read_trajectory(source: Path) -> Trajectory:
     _check_rows(name, table, head.rate_hz, first_line)
     if abs(head.duration_s - table[-1, 0]) > 0.5 / head.rate_hz:
         raise TrajectoryFileError(
-            name, first_line + len(table) - 1,
-            f"the last sample is at {table[-1, 0]:g} s, the header promises {head.duration_s:g} s")
+            name,
+            first_line + len(table) - 1,
+            f"the last sample is at {table[-1, 0]:g} s, the header promises {head.duration_s:g} s",
+        )
     if not head.arm:
         raise TrajectoryFileError(name, None, "names no arm (no '# arm:' line)")
     return Trajectory(
-        arm=head.arm, drawing=head.drawing, method=head.method, rate_hz=head.rate_hz, columns=columns,
-        positions=np.ascontiguousarray(table[:, 1:-2]), pen=table[:, -2] != 0, stroke=table[:, -1].astype(np.int64),
-        svg_to_arm_mm=head.svg_to_arm_mm, first_line=first_line, decimals=decimals, placement=head.placement,
-        left_out=head.left_out)
+        arm=head.arm,
+        drawing=head.drawing,
+        method=head.method,
+        rate_hz=head.rate_hz,
+        columns=columns,
+        positions=np.ascontiguousarray(table[:, 1:-2]),
+        pen=table[:, -2] != 0,
+        stroke=table[:, -1].astype(np.int64),
+        svg_to_arm_mm=head.svg_to_arm_mm,
+        first_line=first_line,
+        decimals=decimals,
+        placement=head.placement,
+        left_out=head.left_out,
+    )
 
 
 def _joint_columns(name: str, line: str, number: int) -> tuple[str, ...]:
@@ -262,7 +287,7 @@ def _decimals(rows: Sequence[str], width: int) -> ByteArray:
     cell_of_point = np.searchsorted(ends, points)
     found[cell_of_point] = digits[last[cell_of_point]] - digits[points]
     for cell, exponent in zip(cell_of_exponent.tolist(), exponents.tolist(), strict=True):
-        found[cell] -= int(text[exponent + 1:ends[cell]].tobytes())
+        found[cell] -= int(text[exponent + 1 : ends[cell]].tobytes())
     decimals: ByteArray = np.clip(found, 0, _MOST_DECIMALS).astype(np.int8).reshape(len(rows), width)
     return decimals
 
@@ -292,8 +317,10 @@ def _check_rows(name: str, table: FloatArray, rate_hz: float, first_line: int) -
         if bad.any():
             raise TrajectoryFileError(name, first_line + int(np.argmax(bad)), reason)
 
-    refuse(np.abs(table[:, 0] - np.arange(len(table)) / rate_hz) > 2e-6 + 1e-6 / rate_hz,
-           f"time is not on the grid of {rate_hz:g} samples a second (a line is missing, doubled or edited)")
+    refuse(
+        np.abs(table[:, 0] - np.arange(len(table)) / rate_hz) > 2e-6 + 1e-6 / rate_hz,
+        f"time is not on the grid of {rate_hz:g} samples a second (a line is missing, doubled or edited)",
+    )
     refuse((table[:, -2] != 0) & (table[:, -2] != 1), "pen is neither 0 nor 1")
     stroke = table[:, -1]
     refuse((stroke != np.round(stroke)) | (stroke < TRAVELLING), "stroke is not an index")

@@ -24,8 +24,11 @@ class Shape:
 
 
 def svg_of(shapes: list[Shape], attributes: str = 'viewBox="0 0 100 100"') -> str:
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" {attributes} fill="none" stroke="black" stroke-linecap="round">'
-            + "".join(shape.element for shape in shapes) + "</svg>")
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" {attributes} fill="none" stroke="black" stroke-linecap="round">'
+        + "".join(shape.element for shape in shapes)
+        + "</svg>"
+    )
 
 
 def polyline(*vertices: tuple[float, float]) -> Shape:
@@ -37,14 +40,18 @@ def polyline(*vertices: tuple[float, float]) -> Shape:
 def bezier(*controls: tuple[float, float]) -> Shape:
     a, b, c, d = (np.array(control) for control in controls)
     text = " ".join(f"{x},{y}" for x, y in controls[1:])
-    return Shape(f'<path d="M{controls[0][0]},{controls[0][1]} C{text}"/>',
-                 (1 - _T) ** 3 * a + 3 * (1 - _T) ** 2 * _T * b + 3 * (1 - _T) * _T ** 2 * c + _T ** 3 * d)
+    return Shape(
+        f'<path d="M{controls[0][0]},{controls[0][1]} C{text}"/>',
+        (1 - _T) ** 3 * a + 3 * (1 - _T) ** 2 * _T * b + 3 * (1 - _T) * _T**2 * c + _T**3 * d,
+    )
 
 
 def ellipse(x: float, y: float, rx: float, ry: float) -> Shape:
     around = 2 * pi * _T
-    return Shape(f'<ellipse cx="{x}" cy="{y}" rx="{rx}" ry="{ry}"/>',
-                 np.column_stack((x + rx * np.cos(around), y + ry * np.sin(around))))
+    return Shape(
+        f'<ellipse cx="{x}" cy="{y}" rx="{rx}" ry="{ry}"/>',
+        np.column_stack((x + rx * np.cos(around), y + ry * np.sin(around))),
+    )
 
 
 def tap(x: float, y: float) -> Shape:
@@ -65,26 +72,36 @@ _size = st.integers(5, 400).map(lambda value: value / 10)
 def _transforms(draw: st.DrawFn) -> tuple[str, FloatArray]:
     amount = draw(st.integers(-60, 60))
     angle = radians(amount)
-    return draw(st.sampled_from([
-        (f"rotate({amount})", np.array([[cos(angle), -sin(angle), 0], [sin(angle), cos(angle), 0]])),
-        (f"skewX({amount})", np.array([[1, tan(angle), 0], [0, 1, 0]])),
-        (f"translate({amount} 7) scale(-1 {1 + abs(amount) / 40})",
-         np.array([[-1, 0, amount], [0, 1 + abs(amount) / 40, 7]])),
-    ]))
+    return draw(
+        st.sampled_from(
+            [
+                (f"rotate({amount})", np.array([[cos(angle), -sin(angle), 0], [sin(angle), cos(angle), 0]])),
+                (f"skewX({amount})", np.array([[1, tan(angle), 0], [0, 1, 0]])),
+                (
+                    f"translate({amount} 7) scale(-1 {1 + abs(amount) / 40})",
+                    np.array([[-1, 0, amount], [0, 1 + abs(amount) / 40, 7]]),
+                ),
+            ]
+        )
+    )
 
 
 @st.composite
 def shapes_made(draw: st.DrawFn) -> Shape:
-    shape = draw(st.one_of(
-        st.lists(_place, min_size=2, max_size=6).map(lambda vertices: polyline(*vertices)),
-        st.tuples(_place, _place, _place, _place).map(lambda controls: bezier(*controls)),
-        st.tuples(_coordinate, _coordinate, _size, _size).map(lambda numbers: ellipse(*numbers)),
-        _place.map(lambda place: tap(*place))))
+    shape = draw(
+        st.one_of(
+            st.lists(_place, min_size=2, max_size=6).map(lambda vertices: polyline(*vertices)),
+            st.tuples(_place, _place, _place, _place).map(lambda controls: bezier(*controls)),
+            st.tuples(_coordinate, _coordinate, _size, _size).map(lambda numbers: ellipse(*numbers)),
+            _place.map(lambda place: tap(*place)),
+        )
+    )
     return transformed(shape, *draw(_transforms())) if draw(st.booleans()) else shape
 
 
 drawings_made = st.lists(shapes_made(), min_size=1, max_size=4).filter(
-    lambda shapes: float(np.ptp(np.concatenate([shape.points for shape in shapes]), axis=0).max()) > 1)
+    lambda shapes: float(np.ptp(np.concatenate([shape.points for shape in shapes]), axis=0).max()) > 1
+)
 
 
 def scribbles(file: Path, count: int, points: int) -> Path:

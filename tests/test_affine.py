@@ -31,8 +31,10 @@ def test_turns_add_up_and_keep_lengths(angle: float, other: float, point: FloatA
     np.testing.assert_allclose(np.hypot(*applied(rotation(angle), point)), np.hypot(*point), atol=1e-9)
 
 
-@pytest.mark.parametrize(("angle", "right"), [
-    (0, (1, 0)), (90, (0, 1)), (180, (-1, 0)), (270, (0, -1)), (360, (1, 0)), (-90, (0, -1)), (-450, (0, -1))])
+@pytest.mark.parametrize(
+    ("angle", "right"),
+    [(0, (1, 0)), (90, (0, 1)), (180, (-1, 0)), (270, (0, -1)), (360, (1, 0)), (-90, (0, -1)), (-450, (0, -1))],
+)
 def test_right_angles_are_exact_and_clockwise_where_y_points_down(angle: float, right: tuple[float, float]) -> None:
     """Where the page's rightward unit vector goes: a quarter turn takes it down the page."""
     turned = applied(rotation(angle), np.array([1.0, 0.0]))

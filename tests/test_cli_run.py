@@ -17,8 +17,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hardware.journal import digest, journal_path
-from planner.checking.likeness import likeness
+from hardware.playback.journal import digest, journal_path
+from planner.checking.drawing_error import drawing_error
 from planner.cli import main
 from planner.drawing.flatten import flatten_all
 from planner.drawing.svg import read_drawing
@@ -60,7 +60,8 @@ def _error(capsys: pytest.CaptureFixture[str]) -> str:
 
 
 def test_what_ideal_servos_draw_is_the_drawing_and_real_ones_draw_worse(
-        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     csv, svg, png = tmp_path / "garden.csv", tmp_path / "drawn.svg", tmp_path / "drawn.png"
     example = ROOT / "examples/garden.svg"
     assert main([str(example), "-o", str(csv), "--quiet"]) == 0
@@ -73,7 +74,7 @@ def test_what_ideal_servos_draw_is_the_drawing_and_real_ones_draw_worse(
     a, b, c, d, e, f = read_trajectory(csv).svg_to_arm_mm
     wanted = flatten_all(read_drawing(example).outlines, np.array([[a, c, e], [b, d, f]]), 0.005)
     drawn = flatten_all(read_drawing(svg).outlines, np.eye(2, 3), 0.005)
-    assert likeness([-line[:, ::-1] for line in drawn], wanted).largest_mm < 0.1
+    assert drawing_error([-line[:, ::-1] for line in drawn], wanted).largest_mm < 0.1
     assert main(["run", str(csv), "--fast", "--servos", "real", "--picture", str(svg)]) == 0
     said = re.search(r"off by ([0-9.]+) mm rms", capsys.readouterr().out)
     assert said is not None
@@ -81,7 +82,8 @@ def test_what_ideal_servos_draw_is_the_drawing_and_real_ones_draw_worse(
 
 
 def test_a_dry_run_says_what_would_be_sent_and_sends_nothing(
-        taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    taps_csv: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["run", str(taps_csv), "--driver", "maestro", "--dry-run"]) == 0
     text = capsys.readouterr().out
     assert "can be played on arm 'drawing_arm' by driver maestro" in text
@@ -93,24 +95,31 @@ def test_a_dry_run_says_what_would_be_sent_and_sends_nothing(
     assert list(taps_csv.parent.iterdir()) == [taps_csv]
 
 
-@pytest.mark.parametrize(("options", "message"), [
-    (["--driver", "maestro"], "--driver maestro needs --port; plan ports lists what is plugged in"),
-    (["--driver", "marionette"], "there is no driver 'marionette'; there are sim, mujoco, native, "),
-    (["--port", "/dev/ttyUSB0"], "a simulated arm is at no port"),
-    (["--driver", "ssc32", "--port", "loop://", "--fast"], "--fast goes with --driver sim or mujoco"),
-    (["--driver", "ssc32", "--port", "loop://", "--picture", "d.png"], "--picture goes with --driver sim or mujoco"),
-    (["--driver", "ssc32", "--port", "loop://", "--baud", "0"], "'0' is no speed of a line"),
-    (["--driver", "ssc32", "--port", "loop://", "--baud", "fast"], "'fast' is no speed of a line"),
-    (["--resume", "--from-stroke", "2"], "leave out --from-stroke"),
-    (["--resume"], "there is nothing to resume: no journal"),
-    (["--from-stroke", "10"], "there is no stroke 10; the drawing has 0 to 9"),
-    (["--picture", "drawn.bmp"], "a picture file ends in one of"),
-    (["--picture", "d" * 300 + ".png"], "File name too long"),
-    (["--arm", "scara"], "moves the joints q1_deg, q2_deg"),
-    (["--arm", "drawing_arm_2022"], "line "),
-])
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--driver", "maestro"], "--driver maestro needs --port; plan ports lists what is plugged in"),
+        (["--driver", "marionette"], "there is no driver 'marionette'; there are sim, mujoco, native, "),
+        (["--port", "/dev/ttyUSB0"], "a simulated arm is at no port"),
+        (["--driver", "ssc32", "--port", "loop://", "--fast"], "--fast goes with --driver sim or mujoco"),
+        (
+            ["--driver", "ssc32", "--port", "loop://", "--picture", "d.png"],
+            "--picture goes with --driver sim or mujoco",
+        ),
+        (["--driver", "ssc32", "--port", "loop://", "--baud", "0"], "'0' is no speed of a line"),
+        (["--driver", "ssc32", "--port", "loop://", "--baud", "fast"], "'fast' is no speed of a line"),
+        (["--resume", "--from-stroke", "2"], "leave out --from-stroke"),
+        (["--resume"], "there is nothing to resume: no journal"),
+        (["--from-stroke", "10"], "there is no stroke 10; the drawing has 0 to 9"),
+        (["--picture", "drawn.bmp"], "a picture file ends in one of"),
+        (["--picture", "d" * 300 + ".png"], "File name too long"),
+        (["--arm", "scara"], "moves the joints q1_deg, q2_deg"),
+        (["--arm", "drawing_arm_2022"], "line "),
+    ],
+)
 def test_what_makes_no_sense_is_refused_before_anything_moves(
-        options: list[str], message: str, taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options: list[str], message: str, taps_csv: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["run", str(taps_csv), *options]) == 2
     assert message in _error(capsys)
     assert list(taps_csv.parent.iterdir()) == [taps_csv]
@@ -129,7 +138,8 @@ def test_a_file_that_was_cut_off_is_refused(taps_csv: Path, capsys: pytest.Captu
 
 
 def test_from_a_stroke_on_and_then_nothing_is_left(
-        taps_csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    taps_csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     svg = tmp_path / "drawn.svg"
     assert main(["run", str(taps_csv), "--fast", "--from-stroke", "7", "--picture", str(svg)]) == 0
     assert "0.000 mm at the largest" in capsys.readouterr().out  # beside strokes 7 to 9
@@ -147,7 +157,8 @@ def _entries(journal: Path) -> dict[str, object]:
 
 @pytest.mark.skipif(os.name != "posix", reason="kills a process")
 def test_killed_outright_it_resumes_and_draws_nothing_twice_beyond_one_stroke(
-        taps_csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    taps_csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     journal = taps_csv.with_name("traj.csv.sim.journal")
     process = subprocess.Popen([*RUN, str(taps_csv)], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     until = time.monotonic() + 20
@@ -177,7 +188,8 @@ def test_a_file_changed_since_is_not_resumed(taps_csv: Path, capsys: pytest.Capt
 
 
 def test_where_no_journal_can_be_kept_it_draws_all_the_same_and_says_so(
-        taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    taps_csv: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     taps_csv.with_name("traj.csv.sim.journal").mkdir()
     assert main(["run", str(taps_csv), "--fast"]) == 0
     assert "there will be nothing for --resume to go by: cannot write" in capsys.readouterr().err
@@ -185,7 +197,8 @@ def test_where_no_journal_can_be_kept_it_draws_all_the_same_and_says_so(
 
 @pytest.mark.skipif(not Path("/dev/ptmx").exists(), reason="needs pseudo-terminals")
 def test_a_cable_pulled_mid_run_is_exit_4_and_resume_finishes_on_another_line(
-        taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    taps_csv: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     journal = taps_csv.with_name("traj.csv.journal")
     with pty_line(MaestroModel()) as far:
         command = [*RUN, str(taps_csv), "--driver", "maestro", "--port", far.name]
@@ -296,7 +309,8 @@ def test_nothing_is_said_of_servos_before_the_port_is_open(taps_csv: Path, capsy
 
 
 def test_where_all_is_drawn_nothing_is_left_to_resume(
-        taps_csv: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    taps_csv: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Stopped on the way back to the park pose."""
     from planner.cli.keeping import Keeping
 
@@ -317,8 +331,12 @@ def test_where_all_is_drawn_nothing_is_left_to_resume(
 def test_where_all_is_drawn_a_real_arm_is_only_parked(taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Its pen may still be on the paper."""
     journal = journal_path(taps_csv, simulated=False)
-    journal.write_text(json.dumps({"journal": 2, "sha256": digest(taps_csv), "arm": "drawing_arm", "driver": "ssc32",
-                                   "next_stroke": 10}) + "\n")
+    journal.write_text(
+        json.dumps(
+            {"journal": 2, "sha256": digest(taps_csv), "arm": "drawing_arm", "driver": "ssc32", "next_stroke": 10}
+        )
+        + "\n"
+    )
     model = Ssc32Model()
     with pty_line(model) as far:
         assert main(["run", str(taps_csv), "--driver", "ssc32", "--port", far.name, "--resume"]) == 0
@@ -332,10 +350,12 @@ def test_where_all_is_drawn_a_real_arm_is_only_parked(taps_csv: Path, capsys: py
     assert "is drawn to its end" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("arm", ["drawing_arm", "drawing_arm_2022", "scara", "six_joint", "so101", "stanford",
-                                 "three_joint"])
+@pytest.mark.parametrize(
+    "arm", ["drawing_arm", "drawing_arm_2022", "scara", "six_joint", "so101", "stanford", "three_joint"]
+)
 def test_every_arm_can_be_rehearsed_with_real_servos(
-        arm: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arm: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     drawing, csv = tmp_path / "drawing.svg", tmp_path / "traj.csv"
     drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20"><path d="M5 5h9"/></svg>')
     assert main([str(drawing), "-o", str(csv), "--quiet", "--arm", arm]) == 0
@@ -348,7 +368,8 @@ def test_every_arm_can_be_rehearsed_with_real_servos(
 
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")
 def test_a_wrong_port_does_not_cost_the_earlier_runs_journal(
-        taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    taps_csv: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     journal = taps_csv.with_name(taps_csv.name + ".journal")
     journal.write_text("what an earlier run has drawn")
     assert main(["run", str(taps_csv), "--driver", "ssc32", "--port", str(taps_csv.parent / "nothing")]) == 4

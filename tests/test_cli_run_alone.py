@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hardware.claims import Claimed, claim, claim_of_journal, claim_of_port
-from hardware.journal import journal_path
+from hardware.playback.claims import Claimed, claim, claim_of_journal, claim_of_port
+from hardware.playback.journal import journal_path
 from planner.cli import main
 from tests.hardware.controllers.lines import pty_line
 from tests.hardware.controllers.ssc32 import Ssc32Model
@@ -58,7 +58,8 @@ def running(csv: Path) -> Iterator[subprocess.Popen[bytes]]:
 
 
 def test_a_second_run_of_a_trajectory_is_refused_by_name_until_the_first_is_gone(
-        csv: Path, running: subprocess.Popen[bytes], capsys: pytest.CaptureFixture[str]) -> None:
+    csv: Path, running: subprocess.Popen[bytes], capsys: pytest.CaptureFixture[str]
+) -> None:
     link = csv.with_name("link.csv")
     link.symlink_to(csv)
     before = journal_path(csv, simulated=True).read_bytes()
@@ -150,7 +151,8 @@ def test_where_no_claim_can_be_made_there_is_none(tmp_path: Path) -> None:
 
 
 def test_a_pipe_is_drawn_without_a_journal_and_never_resumed(
-        csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     assert main(["run", str(pipe), "--fast", "--resume"]) == 2  # at once, though nobody writes
@@ -167,8 +169,15 @@ def test_a_pipe_is_drawn_without_a_journal_and_never_resumed(
 def test_standard_input_gets_no_journal_even_where_it_is_a_file(csv: Path, options: list[str]) -> None:
     before = sorted(Path("/dev").glob("*.journal*"))
     with csv.open("rb") as file:
-        done = subprocess.run([*RUN, "/dev/stdin", "--fast", *options], cwd=ROOT, stdin=file, capture_output=True,
-                              text=True, timeout=60, check=False)
+        done = subprocess.run(
+            [*RUN, "/dev/stdin", "--fast", *options],
+            cwd=ROOT,
+            stdin=file,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
     assert done.returncode == (2 if options else 0)
     assert "--resume to go by" in done.stderr or "cannot be told" in done.stderr
     assert sorted(Path("/dev").glob("*.journal*")) == before
@@ -190,13 +199,20 @@ def test_a_name_too_long_for_a_journal_is_drawn_without_one(csv: Path, capsys: p
     assert "File name too long" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("content", [
-    b"[" * 100_000, b"\x00\xff\x80" * 1000, b'{"journal": 1}\n',
-    b'{"journal": 1, "sha256": "SHA", "arm": "drawing_arm", "driver": "sim", "next_stroke": 99}\n',
-    b'{"journal": 1, "sha256": "SHA", "arm": "drawing_arm", "driver": "sim", "next_stroke": 1, "sent_stroke": 99}\n'])
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"[" * 100_000,
+        b"\x00\xff\x80" * 1000,
+        b'{"journal": 1}\n',
+        b'{"journal": 1, "sha256": "SHA", "arm": "drawing_arm", "driver": "sim", "next_stroke": 99}\n',
+        b'{"journal": 1, "sha256": "SHA", "arm": "drawing_arm", "driver": "sim", "next_stroke": 1, "sent_stroke": 99}\n',
+    ],
+)
 def test_a_journal_that_cannot_be_true_is_refused(
-        content: bytes, csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from hardware.journal import digest
+    content: bytes, csv: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from hardware.playback.journal import digest
 
     journal_path(csv, simulated=True).write_bytes(content.replace(b"SHA", digest(csv).encode()))
     assert main(["run", str(csv), "--fast", "--resume"]) == 2
@@ -206,11 +222,14 @@ def test_a_journal_that_cannot_be_true_is_refused(
 
 
 def test_strokes_in_doubt_are_drawn_again_and_told(csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from hardware.journal import digest
+    from hardware.playback.journal import digest
 
     journal_path(csv, simulated=True).write_text(
         f'{{"journal": 1, "sha256": "{digest(csv)}", "arm": "drawing_arm", "driver": "sim", "next_stroke": 4, '
-        '"sent_stroke": 6}\n')
+        '"sent_stroke": 6}\n'
+    )
     assert main(["run", str(csv), "--fast", "--resume"]) == 0
-    assert ("going on from stroke 4; strokes 4 to 6 were sent, but the controller was not heard to have drawn so far: "
-            "drawn again, unless you see the ink and take --from-stroke 7 instead") in capsys.readouterr().err
+    assert (
+        "going on from stroke 4; strokes 4 to 6 were sent, but the controller was not heard to have drawn so far: "
+        "drawn again, unless you see the ink and take --from-stroke 7 instead"
+    ) in capsys.readouterr().err

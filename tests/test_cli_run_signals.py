@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from hardware.journal import digest, journal_path
-from hardware.journal_entry import read_journal
+from hardware.playback.journal import digest, journal_path
+from hardware.playback.journal_entry import read_journal
 from planner.cli import main
 from tests.hardware.controllers.ssc32 import Ssc32Model
 from tests.test_cli_run import ROOT, RUN, _Terminal
@@ -26,8 +26,9 @@ def planned(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A large circle drawn in one stroke of several seconds."""
     folder = tmp_path_factory.mktemp("planned")
     drawing, target = folder / "drawing.svg", folder / "traj.csv"
-    drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 160 60"><circle cx="80" cy="30" r="29"/>'
-                       "</svg>")
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 160 60"><circle cx="80" cy="30" r="29"/></svg>'
+    )
     assert main([str(drawing), "-o", str(target), "--quiet"]) == 0
     return target
 
@@ -49,10 +50,10 @@ def test_a_terminal_that_is_closed_stops_and_parks(csv: Path) -> None:
     assert entry.ended == "stopped"
 
 
-@pytest.mark.parametrize("numbers", [[signal.SIGTERM], [signal.SIGHUP], [signal.SIGHUP] * 3,
-                                     [signal.SIGTERM, signal.SIGHUP]])
-def test_signals_stop_and_a_closed_terminal_never_stops_in_the_midst(
-        numbers: list[signal.Signals], csv: Path) -> None:
+@pytest.mark.parametrize(
+    "numbers", [[signal.SIGTERM], [signal.SIGHUP], [signal.SIGHUP] * 3, [signal.SIGTERM, signal.SIGHUP]]
+)
+def test_signals_stop_and_a_closed_terminal_never_stops_in_the_midst(numbers: list[signal.Signals], csv: Path) -> None:
     """A shell and the system may both tell of it."""
     process = _started(csv)
     for number in numbers:
@@ -78,8 +79,14 @@ def test_what_nohup_asks_for_is_kept(csv: Path) -> None:
 
 
 def _started(csv: Path, before: list[str] | None = None) -> subprocess.Popen[str]:
-    process = subprocess.Popen([*(before or []), *RUN, str(csv)], cwd=ROOT, stdin=subprocess.DEVNULL,
-                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [*(before or []), *RUN, str(csv)],
+        cwd=ROOT,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     until = time.monotonic() + 60
     while not journal_path(csv, simulated=True).exists() and time.monotonic() < until:
         time.sleep(0.02)
@@ -95,10 +102,17 @@ def full_line() -> Iterator[tuple[str, socket.socket]]:
 
 
 def test_a_request_to_terminate_is_heard_while_a_line_takes_nothing(
-        csv: Path, full_line: tuple[str, socket.socket]) -> None:
+    csv: Path, full_line: tuple[str, socket.socket]
+) -> None:
     url, server = full_line
-    process = subprocess.Popen([*RUN, str(csv), "--driver", "ssc32", "--port", url], cwd=ROOT,
-                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [*RUN, str(csv), "--driver", "ssc32", "--port", url],
+        cwd=ROOT,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     server.settimeout(60)
     far, _ = server.accept()
     model = Ssc32Model()
@@ -118,13 +132,21 @@ def test_a_request_to_terminate_is_heard_while_a_line_takes_nothing(
 def test_a_run_that_still_asks_how_far_an_earlier_one_came_ends_at_once(csv: Path, number: signal.Signals) -> None:
     """Nothing moves yet; the journal stays as it was, and port and trajectory are free again."""
     journal = journal_path(csv, simulated=False)
-    kept = json.dumps({"journal": 2, "sha256": digest(csv), "arm": "drawing_arm", "driver": "native",
-                       "next_stroke": 0}) + "\n"
+    kept = (
+        json.dumps({"journal": 2, "sha256": digest(csv), "arm": "drawing_arm", "driver": "native", "next_stroke": 0})
+        + "\n"
+    )
     journal.write_text(kept)
     with socket.create_server(("127.0.0.1", 0)) as server:
         url = f"socket://127.0.0.1:{server.getsockname()[1]}"
-        process = subprocess.Popen([*RUN, str(csv), "--driver", "native", "--port", url, "--resume"], cwd=ROOT,
-                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            [*RUN, str(csv), "--driver", "native", "--port", url, "--resume"],
+            cwd=ROOT,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         server.settimeout(60)
         far, _ = server.accept()
         with far:

@@ -25,8 +25,11 @@ def commands_of(page: Path) -> list[list[str]]:
     """The commands of a page that are to be run, split into words. A block is passed over where the line above it
     says so, and why."""
     text = page.read_text(encoding="utf-8")
-    blocks = [match[2].replace("\\\n", " ") for match in _FENCE.finditer(text)
-              if not text[:match.start()].rstrip().splitlines()[-1].lstrip().startswith(NOT_RUN)]
+    blocks = [
+        match[2].replace("\\\n", " ")
+        for match in _FENCE.finditer(text)
+        if not text[: match.start()].rstrip().splitlines()[-1].lstrip().startswith(NOT_RUN)
+    ]
     return [words for block in blocks for line in block.splitlines() if (words := shlex.split(line, comments=True))]
 
 
@@ -34,14 +37,18 @@ def at_hand(words: list[str]) -> list[str]:
     """What a machine without an arm can run: played on the simulated arm and without waiting."""
     if words[1:2] != ["run"] or "--dry-run" in words:
         return words
-    kept = [word for before, word in zip(["", *words], words, strict=False)
-            if not {before, word} & {"--driver", "--port"}]
+    kept = [
+        word for before, word in zip(["", *words], words, strict=False) if not {before, word} & {"--driver", "--port"}
+    ]
     return kept if "--fast" in kept else [*kept, "--fast"]
 
 
 def written_by(words: list[str]) -> list[Path]:
-    return [Path(named) / "index.html" if option == "--report" else Path(named)
-            for option, named in pairwise(words) if option in WRITTEN]
+    return [
+        Path(named) / "index.html" if option == "--report" else Path(named)
+        for option, named in pairwise(words)
+        if option in WRITTEN
+    ]
 
 
 def test_commands_of_every_page_do_what_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

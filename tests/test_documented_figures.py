@@ -7,25 +7,25 @@ from pathlib import Path
 
 import pytest
 
-from planner.arms import file_section, posture_cost
+from planner.arms import configuration_cost, file_section
 from planner.arms.arm_file import known_arms, load_arm
-from planner.arms.canvas import usable_canvas
 from planner.cli import quantities
 from planner.inverse_kinematics import dls, guesses, nlp
 from planner.settings import PlanSettings
+from planner.workspace.canvas import usable_canvas
 
 _DOCS = Path(__file__).resolve().parent.parent / "docs"
 
 _FIGURES = [
     ("mathematics.md", r"less (\S+) % of each range", 100 * nlp._ROOM),
-    ("mathematics.md", r"up to (\d+) other postures", guesses._GUESSES),
+    ("mathematics.md", r"up to (\d+) other configurations", guesses._GUESSES),
     ("mathematics.md", r"error is below (\S+) mm along the paper", dls.DOCUMENTED.tolerance_xy_mm),
     ("mathematics.md", r"and (\S+) mm across it", dls.DOCUMENTED.tolerance_z_mm),
     ("mathematics.md", r"\$\\lambda\^2 = (\d+)\$ weighs", dls.DOCUMENTED.lambda_squared),
     ("mathematics.md", r"For drawing, the tolerance is (\S+) mm", dls.FOR_DRAWING.tolerance_xy_mm),
     ("mathematics.md", r"where a radian counts as (\d+) cm", dls._LEVER_CM),
     ("arms.md", r"lengths together are (\d+) m", file_section.LONGEST_MM / 1000),
-    ("commands.md", r"time counts for a (twentieth) of", posture_cost._LEAST_TIME),
+    ("commands.md", r"time counts for a (twentieth) of", configuration_cost._LEAST_TIME),
     ("commands.md", r"--tolerance LENGTH` .*?\| ([\d.]+) mm", PlanSettings().tolerance_mm),
     ("commands.md", r"--rate HZ` \| samples per second, (\d+) or more", quantities.MIN_RATE_HZ),
 ]
@@ -46,6 +46,9 @@ def test_a_figure_in_the_prose_is_that_of_the_code(page: str, phrase: str, value
 def test_the_table_of_arms_tells_their_canvases(name: str) -> None:
     arm = load_arm(name)
     canvas = usable_canvas(arm, arm.pen.lift_mm)
-    row = next(line for line in (_DOCS / "arms.md").read_text(encoding="utf-8").splitlines()
-               if line.startswith(f"| `{name}` |"))
+    row = next(
+        line
+        for line in (_DOCS / "arms.md").read_text(encoding="utf-8").splitlines()
+        if line.startswith(f"| `{name}` |")
+    )
     assert f"| {canvas.width_mm:.0f} × {canvas.height_mm:.0f} |" in row

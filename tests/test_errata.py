@@ -2,7 +2,7 @@
 
 Every test holds for the correct version and would fail for the printed one, which it shows to be off. The rows are
 those of docs/mathematics.md; misprinted figures of the iteration table and of the SCARA's null space are tested
-where the figures are, in tests/inverse_kinematics/test_dls.py and tests/arms/closed_forms.
+where the figures are, in tests/inverse_kinematics/test_dls.py and tests/inverse_kinematics/closed_forms.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from planner.arms.arm import Arm
-from planner.arms.canvas import documented_canvas, geometric_reach_mm, optimal_canvas
-from planner.arms.closed_forms import scara, six_joint, three_joint
-from planner.arms.joint_time import joint_time_s
-from planner.arms.kinematics import kinematics_of
 from planner.arrays import FloatArray
+from planner.inverse_kinematics.closed_forms import scara, six_joint, three_joint
+from planner.kinematics.chain import kinematics_of
+from planner.kinematics.joint_time import joint_time_s
+from planner.workspace.canvas import documented_canvas, geometric_reach_mm, optimal_canvas
 from tests.arms.chains import dh_frames, dh_matrix, load_once
 
 RNG_SEED = 20060101
@@ -33,7 +33,7 @@ def bare(name: str) -> Arm:
     return replace(arm, joints=(replace(arm.joints[0], d_mm=0.0), *arm.joints[1:]))
 
 
-def some_posture(arm: Arm, seed: int = RNG_SEED) -> FloatArray:
+def some_configuration(arm: Arm, seed: int = RNG_SEED) -> FloatArray:
     return np.random.default_rng(seed).uniform(arm.minimum, arm.maximum)
 
 
@@ -54,7 +54,7 @@ def test_order_of_the_four_factors_of_a_dh_row() -> None:
 
 @pytest.fixture
 def drawing() -> tuple[FloatArray, list[FloatArray]]:
-    """A posture of the drawing arm that no rule holds (q5 too is free), and its frames."""
+    """A configuration of the drawing arm that no rule holds (q5 too is free), and its frames."""
     joints = np.array([0.4, 1.1, -0.8, -0.5, 0.3])
     return joints, dh_frames(load_once("drawing_arm"), joints)
 
@@ -105,8 +105,8 @@ def test_largest_radius() -> None:
     shorter = replace(arm, joints=(*arm.joints[:4], replace(arm.joints[4], a_mm=30.0)))
     l1, l5 = 50.0, 30.0
     reach = geometric_reach_mm(shorter)
-    assert reach == pytest.approx(np.sqrt(150.0 ** 2 - (l5 - l1) ** 2), abs=1e-4)
-    assert abs(reach - np.sqrt(150.0 ** 2 + (l5 - l1) ** 2)) > OFF
+    assert reach == pytest.approx(np.sqrt(150.0**2 - (l5 - l1) ** 2), abs=1e-4)
+    assert abs(reach - np.sqrt(150.0**2 + (l5 - l1) ** 2)) > OFF
 
 
 def test_derivative_of_the_area_of_the_drawing() -> None:
@@ -155,8 +155,14 @@ def test_pose_of_the_scara() -> None:
 
     def pose(turn: float, elbow: float) -> FloatArray:
         c, s = np.cos(turn), np.sin(turn)
-        return np.array([[c, -s, 0, a2 * np.cos(elbow) + a1 * np.cos(q1)],
-                         [s, c, 0, a2 * np.sin(elbow) + a1 * np.sin(q1)], [0, 0, 1, q3], [0, 0, 0, 1]])
+        return np.array(
+            [
+                [c, -s, 0, a2 * np.cos(elbow) + a1 * np.cos(q1)],
+                [s, c, 0, a2 * np.sin(elbow) + a1 * np.sin(q1)],
+                [0, 0, 1, q3],
+                [0, 0, 0, 1],
+            ]
+        )
 
     np.testing.assert_allclose(frame, pose(q1 + q2 + q4, q1 + q2), atol=1e-10)
     assert off(pose(q2 + q4, q2), frame) > OFF
@@ -192,18 +198,22 @@ def test_the_stretched_scara_is_within_reach() -> None:
     pose[0, 3] = arm.joints[0].a_mm + arm.joints[1].a_mm
     found = scara.at_pose(arm, pose[None])
     assert found.gap_mm[0] == 0 and found.singular[0]
-    np.testing.assert_allclose(dh_frames(arm, found.postures[0, 0])[-1], pose, atol=1e-9)
+    np.testing.assert_allclose(dh_frames(arm, found.configurations[0, 0])[-1], pose, atol=1e-9)
 
 
 def test_joint_differences_of_the_scara_s_worked_example() -> None:
     """End less start; the times printed are right, as they come of absolute values."""
     given = bare("scara")
-    arm = replace(given, joints=tuple(replace(joint, max_velocity=speed) for joint, speed in zip(
-        given.joints, (1.0, 2.0, 1.0, 3.0), strict=True)))
+    arm = replace(
+        given,
+        joints=tuple(
+            replace(joint, max_velocity=speed) for joint, speed in zip(given.joints, (1.0, 2.0, 1.0, 3.0), strict=True)
+        ),
+    )
     pose = np.eye(4)
     pose[:2, 3] = arm.joints[0].a_mm
     assert arm.joints[0].a_mm == arm.joints[1].a_mm
-    starts = scara.at_pose(arm, pose[None]).postures[0]
+    starts = scara.at_pose(arm, pose[None]).configurations[0]
     correct = np.radians([[0, -90, 0, 90], [-90, 90, 0, 0]])
     printed = np.radians([[0, -90, 0, -90], [90, 90, 0, 0]])
     np.testing.assert_allclose(np.zeros((2, 4)) - starts, correct, atol=1e-12)
@@ -233,7 +243,7 @@ def elbow_and_lead(point: tuple[float, ...]) -> tuple[float, float, float]:
     """Radius, q3 and the angle between upper arm and the way to the tip, by the documents' law of cosines."""
     _, upper, fore = bare("three_joint").joints
     x, y, z = point
-    cosine = (x * x + y * y + z * z - upper.a_mm ** 2 - fore.a_mm ** 2) / (2 * upper.a_mm * fore.a_mm)
+    cosine = (x * x + y * y + z * z - upper.a_mm**2 - fore.a_mm**2) / (2 * upper.a_mm * fore.a_mm)
     q3 = -np.arccos(cosine)
     lead = np.arctan2(fore.a_mm * np.sin(q3), upper.a_mm + fore.a_mm * np.cos(q3))
     return float(np.hypot(x, y)), float(q3), float(lead)
@@ -257,15 +267,15 @@ def test_arc_tangents_lose_the_quadrant(point: tuple[float, float, float]) -> No
     shoulder = np.arctan2(z, radius) - lead
     np.testing.assert_allclose(three_joint_tip(np.arctan2(y, x), shoulder, q3), point, atol=1e-9)
     assert off(three_joint_tip(np.arctan(y / x), shoulder, q3), np.array(point)) > OFF
-    found = three_joint.at_tip(bare("three_joint"), np.array([point]), np.zeros(1)).postures[0]
+    found = three_joint.at_tip(bare("three_joint"), np.array([point]), np.zeros(1)).configurations[0]
     assert np.abs(found - [np.arctan2(y, x), shoulder, q3]).max(axis=1).min() < 1e-9
 
 
 @pytest.fixture(params=range(4))
 def decoupled(request: pytest.FixtureRequest) -> tuple[Arm, FloatArray, FloatArray]:
-    """The six-joint arm, a posture with the wrist plain (q5 above 0), and its pose."""
+    """The six-joint arm, a configuration with the wrist plain (q5 above 0), and its pose."""
     arm = load_once("six_joint")
-    joints = some_posture(arm, request.param)
+    joints = some_configuration(arm, request.param)
     joints[4] = abs(joints[4])
     return arm, joints, dh_frames(arm, joints)[-1]
 
@@ -290,16 +300,19 @@ def test_elbow_of_the_six_joint_arm(decoupled: tuple[Arm, FloatArray, FloatArray
     arm, joints, pose = decoupled
     l1, l2, l3, l4 = (arm.joints[0].d_mm, arm.joints[1].a_mm, arm.joints[3].d_mm, arm.joints[5].d_mm)
     centre = pose[:3, 3] - l4 * pose[:3, 2] - [0, 0, l1]
-    ratio = (centre @ centre - l2 ** 2 - l3 ** 2) / (2 * l2 * l3)
+    ratio = (centre @ centre - l2**2 - l3**2) / (2 * l2 * l3)
     assert np.sin(joints[2]) == pytest.approx(ratio, abs=1e-12)
     assert abs(np.cos(joints[2]) - ratio) > 1e-3
-    found = six_joint.at_pose(arm, pose[None]).postures[0]
+    found = six_joint.at_pose(arm, pose[None]).configurations[0]
     np.testing.assert_allclose(np.sin(found[:, 2]), ratio, atol=1e-9)
 
 
 def test_the_chain_that_errata_are_measured_against_is_the_planner_s() -> None:
     for name in ("drawing_arm", "scara", "three_joint", "six_joint"):
         kinematics = kinematics_of(load_once(name))
-        joints = kinematics.arm.complete(kinematics.free_of(some_posture(kinematics.arm)))
-        np.testing.assert_allclose(kinematics.pose(kinematics.free_of(joints)[None])[0],
-                                   dh_frames(kinematics.arm, joints)[-1], atol=1e-9)
+        joints = kinematics.arm.complete(kinematics.independent_of(some_configuration(kinematics.arm)))
+        np.testing.assert_allclose(
+            kinematics.pose(kinematics.independent_of(joints)[None])[0],
+            dh_frames(kinematics.arm, joints)[-1],
+            atol=1e-9,
+        )

@@ -32,8 +32,9 @@ Command = Callable[..., tuple[int, bytes, str]]
 
 
 @pytest.fixture
-def command(desk: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]
-            ) -> Iterator[Command]:
+def command(
+    desk: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]
+) -> Iterator[Command]:
     """Runs a command in the desk's folder with bytes on standard input: exit code, standard output, standard error."""
     monkeypatch.chdir(desk)
     before = os.dup(0)
@@ -63,8 +64,8 @@ def test_a_plan_on_standard_output_is_rows_alone(desk: Path, command: Command, a
 
 def test_every_command_reads_standard_input(desk: Path, command: Command) -> None:
     rows = (desk / "traj.csv").read_bytes()
-    code, verdict, told = command("check", "-", "--drawing", "drawing.svg", "--json", "-", given=rows)
-    assert code == 0 and json.loads(verdict)["passed"] and "passed" in told
+    code, check_result, told = command("check", "-", "--drawing", "drawing.svg", "--json", "-", given=rows)
+    assert code == 0 and json.loads(check_result)["passed"] and "passed" in told
     assert command("run", "-", "--dry-run", given=rows)[0] == 0
     code, picture, told = command("plot", "-", "-o", "-", given=rows)
     assert code == 0 and picture.startswith(b"\x89PNG") and told == ""
@@ -75,16 +76,21 @@ def test_standard_output_in_a_file_is_added_to(desk: Path) -> None:
     target = desk / "kept.txt"
     target.write_bytes(b"before\n")
     with target.open("ab") as file:
-        subprocess.run([sys.executable, "-m", "planner.cli", "drawing.svg", "-o", "/dev/stdout", "--quiet"], cwd=desk,
-                       stdout=file, check=True)
+        subprocess.run(
+            [sys.executable, "-m", "planner.cli", "drawing.svg", "-o", "/dev/stdout", "--quiet"],
+            cwd=desk,
+            stdout=file,
+            check=True,
+        )
     assert target.read_bytes() == b"before\n" + (desk / "traj.csv").read_bytes()
 
 
 def test_a_pipe_serves_plan_and_report(desk: Path) -> None:
     """And a reader of rows that goes away is no error."""
     plan = [sys.executable, "-m", "planner.cli", "-", "-o", "-", "--quiet", "--report", "report"]
-    with subprocess.Popen(plan, cwd=desk, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-                          ) as process:
+    with subprocess.Popen(
+        plan, cwd=desk, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
         assert process.stdin is not None and process.stdout is not None and process.stderr is not None
         process.stdout.close()
         process.stdin.write(DRAWING.encode())
@@ -94,19 +100,46 @@ def test_a_pipe_serves_plan_and_report(desk: Path) -> None:
     assert "nothing missing" in (desk / "report" / "index.html").read_text()
 
 
-@pytest.mark.parametrize("arguments", [
-    [""], [LONG], ["."], ["/"], ["a\0b.svg"], ["drawing.svg", "-o", ""], ["drawing.svg", "-o", LONG],
-    ["drawing.svg", "-o", "/dev/full"], ["drawing.svg", "-o", "nowhere/traj.csv"], ["drawing.svg", "-o", "drawing.svg"],
-    ["drawing.svg", "-o", "a\0b"], ["drawing.svg", "--report", LONG], ["drawing.svg", "--report", ""],
-    ["drawing.svg", "--report", "-"], ["drawing.svg", "--report", "drawing.svg"],
-    ["check", ""], ["check", LONG], ["check", "."], ["check", "traj.csv", "--json", LONG],
-    ["check", "traj.csv", "--json", "/dev/full"], ["check", "traj.csv", "--drawing", LONG],
-    ["plot", "traj.csv", "-o", f"{LONG}.png"], ["plot", "traj.csv", "-o", ""], ["run", LONG], ["run", ""],
-    ["run", "traj.csv", "--fast", "--picture", f"{LONG}.png"], ["compare", LONG], ["compare", ""],
-    ["compare", "--target", "53", "47", "--json", LONG], ["batch", LONG], ["batch", ""], ["batch", ".", "-o", LONG],
-])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [""],
+        [LONG],
+        ["."],
+        ["/"],
+        ["a\0b.svg"],
+        ["drawing.svg", "-o", ""],
+        ["drawing.svg", "-o", LONG],
+        ["drawing.svg", "-o", "/dev/full"],
+        ["drawing.svg", "-o", "nowhere/traj.csv"],
+        ["drawing.svg", "-o", "drawing.svg"],
+        ["drawing.svg", "-o", "a\0b"],
+        ["drawing.svg", "--report", LONG],
+        ["drawing.svg", "--report", ""],
+        ["drawing.svg", "--report", "-"],
+        ["drawing.svg", "--report", "drawing.svg"],
+        ["check", ""],
+        ["check", LONG],
+        ["check", "."],
+        ["check", "traj.csv", "--json", LONG],
+        ["check", "traj.csv", "--json", "/dev/full"],
+        ["check", "traj.csv", "--drawing", LONG],
+        ["plot", "traj.csv", "-o", f"{LONG}.png"],
+        ["plot", "traj.csv", "-o", ""],
+        ["run", LONG],
+        ["run", ""],
+        ["run", "traj.csv", "--fast", "--picture", f"{LONG}.png"],
+        ["compare", LONG],
+        ["compare", ""],
+        ["compare", "--target", "53", "47", "--json", LONG],
+        ["batch", LONG],
+        ["batch", ""],
+        ["batch", ".", "-o", LONG],
+    ],
+)
 def test_a_name_that_is_no_file_is_told_in_one_line(
-        desk: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    desk: Path, arguments: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(desk)
     before = sorted(path.name for path in desk.iterdir())
     assert main([*arguments]) == 2

@@ -14,7 +14,6 @@ import shapely
 from hypothesis import HealthCheck, given, settings
 
 from planner.arms.arm_file import arms_folder
-from planner.arms.canvas import canvas_of
 from planner.arrays import FloatArray
 from planner.checking.check import check_trajectory
 from planner.drawing.svg import read_drawing
@@ -24,12 +23,18 @@ from planner.pipeline import Plan, plan
 from planner.placement import pieces
 from planner.settings import CanvasKind, Method, PlanSettings
 from planner.trajectory import TRAVELLING, Trajectory, write_trajectory
+from planner.workspace.canvas import canvas_of
 from tests.arms.chains import DRAWING_ARMS, load_once
 from tests.drawn_shapes import Shape, bezier, drawings_made, ellipse, polyline, svg_of, tap
 
 TOLERANCE_MM = 0.05
-FACE = [ellipse(50, 50, 45, 40), bezier((25, 65), (35, 85), (65, 85), (75, 65)), tap(35, 40), tap(65, 40),
-        polyline((50, 45), (45, 58), (54, 57.5), (45, 58))]
+FACE = [
+    ellipse(50, 50, 45, 40),
+    bezier((25, 65), (35, 85), (65, 85), (75, 65)),
+    tap(35, 40),
+    tap(65, 40),
+    polyline((50, 45), (45, 58), (54, 57.5), (45, 58)),
+]
 
 
 def unheard(stage: str, done: int, total: int) -> None:
@@ -55,8 +60,13 @@ def tips_by_formula(table: dict[str, Any], joints_deg: FloatArray) -> FloatArray
     lengths = np.array([link["a_mm"] for link in links])
     beside = sum(link["d_mm"] for link in links)
     radius, height = lengths @ np.cos(pitch), base["d_mm"] + lengths @ np.sin(pitch)
-    return np.column_stack((radius * np.cos(azimuth) + beside * np.sin(azimuth),
-                            radius * np.sin(azimuth) - beside * np.cos(azimuth), height))
+    return np.column_stack(
+        (
+            radius * np.cos(azimuth) + beside * np.sin(azimuth),
+            radius * np.sin(azimuth) - beside * np.cos(azimuth),
+            height,
+        )
+    )
 
 
 def runs(trajectory: Trajectory, tips_mm: FloatArray) -> list[FloatArray]:
@@ -87,7 +97,7 @@ def assert_keeps_its_promises(trajectory: Trajectory, shapes: list[Shape], arm_n
     for order, key in enumerate(("velocity_deg_s", "acceleration_deg_s2", "jerk_deg_s3"), 1):
         limit = np.array([joint[f"max_{key}"] for joint in table["joints"]])
         held = np.concatenate((q[:1],) * 3 + (q,) + (q[-1:],) * 3)  # at rest before and after
-        assert (np.abs(np.diff(held, order, axis=0)) / period ** order <= limit * 1.0005).all(), key
+        assert (np.abs(np.diff(held, order, axis=0)) / period**order <= limit * 1.0005).all(), key
     assert (q >= np.array([joint["min_deg"] for joint in table["joints"]]) - 1e-6).all()
     assert (q <= np.array([joint["max_deg"] for joint in table["joints"]]) + 1e-6).all()
     assert np.abs(q[:, 1:].sum(axis=1) + 90.0).max() <= 1e-4
@@ -107,8 +117,8 @@ def assert_keeps_its_promises(trajectory: Trajectory, shapes: list[Shape], arm_n
 
 
 def assert_checked(trajectory: Trajectory, folder: Path, arm_name: str = "drawing_arm") -> None:
-    verdict = check_trajectory(trajectory, load_once(arm_name), read_drawing(folder / "drawing.svg"))
-    assert verdict.passed, verdict.text()
+    check_result = check_trajectory(trajectory, load_once(arm_name), read_drawing(folder / "drawing.svg"))
+    assert check_result.passed, check_result.text()
 
 
 @settings(deadline=None, max_examples=5, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -137,31 +147,45 @@ def test_drawings_fill_their_canvas(tmp_path: Path, canvas: CanvasKind, rotate_d
     wanted = PlanSettings(canvas=canvas, rotate_deg=rotate_deg, margin_mm=8.0)
     result = planned(tmp_path, [ellipse(30, 30, 20, 20)], wanted)
     where = canvas_of(arm, canvas, arm.pen.lift_mm)
-    (x, y), = (line.T for line in placed(result.trajectory, [ellipse(30, 30, 20, 20)]))
-    np.testing.assert_allclose([(x.min() + x.max()) / 2, (y.min() + y.max()) / 2],
-                               [(where.near_mm + where.far_mm) / 2, (where.left_mm + where.right_mm) / 2], atol=0.05)
+    ((x, y),) = (line.T for line in placed(result.trajectory, [ellipse(30, 30, 20, 20)]))
+    np.testing.assert_allclose(
+        [(x.min() + x.max()) / 2, (y.min() + y.max()) / 2],
+        [(where.near_mm + where.far_mm) / 2, (where.left_mm + where.right_mm) / 2],
+        atol=0.05,
+    )
     room = min(where.width_mm, where.height_mm) - 16
     np.testing.assert_allclose([np.ptp(x), np.ptp(y), *result.summary.size_mm], room, atol=0.05)
     assert_checked(result.trajectory, tmp_path)
 
 
-@pytest.mark.parametrize("attributes", [
-    'viewBox="-10 20 100 50" width="60mm" height="40mm"', 'width="50mm" height="2in"', "",
-    'viewBox="0 0 200 200" preserveAspectRatio="none" width="3cm" height="2cm"'])
+@pytest.mark.parametrize(
+    "attributes",
+    [
+        'viewBox="-10 20 100 50" width="60mm" height="40mm"',
+        'width="50mm" height="2in"',
+        "",
+        'viewBox="0 0 200 200" preserveAspectRatio="none" width="3cm" height="2cm"',
+    ],
+)
 def test_svg_to_arm_mm_says_where_the_pen_is(tmp_path: Path, attributes: str) -> None:
     """Three taps at known places of the SVG; at true size, the page's millimetres are the paper's."""
     shapes = [tap(10, 30), tap(60, 30), tap(10, 50)]
     result = planned(tmp_path, shapes, PlanSettings(fit=False), attributes)
-    drawn = np.array([line[0, :2] for line in runs(
-        result.trajectory, tips_by_formula(arm_table("drawing_arm"), result.trajectory.positions))])
+    drawn = np.array(
+        [
+            line[0, :2]
+            for line in runs(result.trajectory, tips_by_formula(arm_table("drawing_arm"), result.trajectory.positions))
+        ]
+    )
     wanted = np.concatenate(placed(result.trajectory, shapes))
     gaps = np.hypot(*(wanted[:, None] - drawn).T)
     assert gaps.min(axis=0).max() < 1e-6 and gaps.min(axis=1).max() < 1e-6
     origin, across, down = wanted
     assert across[1] < origin[1] and down[0] < origin[0]  # to the right of the arm, and towards it
     per_unit = read_drawing(tmp_path / "drawing.svg").user_to_page
-    np.testing.assert_allclose([origin[1] - across[1], origin[0] - down[0]],
-                               [50 * per_unit[0, 0], 20 * per_unit[1, 1]], rtol=1e-9)
+    np.testing.assert_allclose(
+        [origin[1] - across[1], origin[0] - down[0]], [50 * per_unit[0, 0], 20 * per_unit[1, 1]], rtol=1e-9
+    )
     assert result.summary.scale == 1.0
 
 
@@ -194,9 +218,9 @@ def test_what_is_out_of_reach_is_named_or_left_out(tmp_path: Path) -> None:
     result = planned(tmp_path, shapes, replace(wanted, skip_unreachable=True))
     assert any("out of reach" in warning for warning in result.summary.warnings)
     told, shown = result.trajectory.left_out, read_drawing(tmp_path / "drawing.svg")
-    verdict = check_trajectory(result.trajectory, load_once(str(file)), shown)
-    assert verdict.passed, verdict.text()
-    assert f"nothing missing: left out as asked: {told.length_mm:.0f}"[:-1] in verdict.text()
+    check_result = check_trajectory(result.trajectory, load_once(str(file)), shown)
+    assert check_result.passed, check_result.text()
+    assert f"nothing missing: left out as asked: {told.length_mm:.0f}"[:-1] in check_result.text()
     assert told.taps == 1
     for other in (LeftOut(0.9 * told.length_mm, 1), LeftOut(told.length_mm, 0), LeftOut()):
         (fault,) = check_trajectory(replace(result.trajectory, left_out=other), load_once(str(file)), shown).faults
@@ -255,9 +279,14 @@ def test_the_summary_says_what_the_trajectory_is(tmp_path: Path) -> None:
     assert summary.warnings == []
 
 
-def test_doubled_points_and_tiny_strokes_are_no_obstacle(tmp_path: Path) -> None:
-    shapes = [polyline((0, 0), (0, 0), (40, 0), (40, 0), (40, 1e-9), (0, 0)), polyline((10, 10), (10.0001, 10)),
-              polyline((20, 20), (20, 20)), ellipse(50, 50, 1e-3, 2e-3), polyline((60, 60), (60.02, 60), (60, 60))]
+def test_doubled_points_and_tiny_strokes_are_no_infeasible_path(tmp_path: Path) -> None:
+    shapes = [
+        polyline((0, 0), (0, 0), (40, 0), (40, 0), (40, 1e-9), (0, 0)),
+        polyline((10, 10), (10.0001, 10)),
+        polyline((20, 20), (20, 20)),
+        ellipse(50, 50, 1e-3, 2e-3),
+        polyline((60, 60), (60.02, 60), (60, 60)),
+    ]
     trajectory = planned(tmp_path, shapes, PlanSettings()).trajectory
     assert_checked(trajectory, tmp_path)
 
@@ -274,10 +303,12 @@ def test_progress_is_told_stage_by_stage(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("rate_hz", "speed_mm_s", "tolerance_mm"), [(50.0, 300.0, 0.05), (100.0, 200.0, 0.01)])
 def test_between_rare_samples_of_quick_pens_joints_that_move_straight_keep_the_tip_on_the_line(
-        tmp_path: Path, rate_hz: float, speed_mm_s: float, tolerance_mm: float) -> None:
+    tmp_path: Path, rate_hz: float, speed_mm_s: float, tolerance_mm: float
+) -> None:
     wanted = PlanSettings(rate_hz=rate_hz, speed_mm_s=speed_mm_s, tolerance_mm=tolerance_mm)
     trajectory = planned(tmp_path, [polyline((0, 50), (100, 50)), polyline((50, 0), (50, 100))], wanted).trajectory
-    verdict = check_trajectory(trajectory, load_once("drawing_arm"), read_drawing(tmp_path / "drawing.svg"),
-                               tolerance_mm)
-    missed = [finding for finding in verdict.findings if not finding.passed]
+    check_result = check_trajectory(
+        trajectory, load_once("drawing_arm"), read_drawing(tmp_path / "drawing.svg"), tolerance_mm
+    )
+    missed = [finding for finding in check_result.findings if not finding.passed]
     assert not [finding for finding in missed if "drawing" in finding.remark or "paper" in finding.check], missed

@@ -22,7 +22,10 @@ def cloud_names(code: str) -> Iterator[str]:
     """Every mention in `code`: as attribute, keyword or variable, or as text handed to setattr."""
     for node in ast.walk(ast.parse(code)):
         mentioned = {
-            ast.Attribute: "attr", ast.keyword: "arg", ast.Name: "id", ast.Constant: "value",
+            ast.Attribute: "attr",
+            ast.keyword: "arg",
+            ast.Name: "id",
+            ast.Constant: "value",
         }.get(type(node))
         name = getattr(node, mentioned) if mentioned else None
         if isinstance(name, str) and is_cloud_name(name):
@@ -35,13 +38,16 @@ def test_the_sources_name_none_of_them() -> None:
     assert {path: names for path, names in found.items() if names} == {}
 
 
-@pytest.mark.parametrize("code", [
-    "problem.intermediate_positions = points",
-    "problem.per_section_max_velocity = limits",
-    "setattr(problem, 'intermediate_positions', points)",
-    "make(per_section_max_jerk=3.0)",
-    "otg.filter_intermediate_positions(problem, 0.1)",
-])
+@pytest.mark.parametrize(
+    "code",
+    [
+        "problem.intermediate_positions = points",
+        "problem.per_section_max_velocity = limits",
+        "setattr(problem, 'intermediate_positions', points)",
+        "make(per_section_max_jerk=3.0)",
+        "otg.filter_intermediate_positions(problem, 0.1)",
+    ],
+)
 def test_each_way_of_naming_them_is_seen(code: str) -> None:
     assert list(cloud_names(code))
 

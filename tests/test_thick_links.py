@@ -13,18 +13,18 @@ import pytest
 from planner import pipeline
 from planner.arms.arm_file import arms_folder, read_arm_file
 from planner.arms.description import arm_description
-from planner.arms.link_clearance import Collision
-from planner.arms.posture_field import posture_field
 from planner.checking.check import check_trajectory
 from planner.cli import main
 from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide
+from planner.execution.work_chunks import PlanContext, TravelChunk, planned_travel_moves
+from planner.execution.workers import ALONE
+from planner.kinematics.link_clearance import Collision
 from planner.pipeline import plan
-from planner.portions import HopPortion, Kit, planned_hops
+from planner.redundancy.configuration_map import configuration_map_of
 from planner.settings import PlanSettings
-from planner.timing.hops import Hop, HopRules, Touch
 from planner.trajectory import TRAVELLING, Trajectory, read_trajectory
-from planner.workers import ALONE
+from planner.travel.travel_moves import Contact, TravelMove, TravelRules
 from tests.arms.chains import load_once, thick
 
 LINES = ("M20 5 H200", "M110 20 V50", "M100 89 H120")  # the last one near the base, where the arm folds most
@@ -51,15 +51,19 @@ def arm_file(folder: Path, **thickness_mm: float) -> Path:
 
 
 def test_an_arm_that_folds_without_thickness_does_not_with_it(
-        drawing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    drawing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     arm = str(arm_file(tmp_path, q1=30.0, q2=30.0, q3=30.0, q4=30.0, q5=30.0))
     output = str(tmp_path / "lines.csv")
     assert main([str(drawing), "-o", output, "--margin", "0", "--quiet"]) == 0
     assert main(["check", output]) == 0
     assert "links apart" not in capsys.readouterr().out
-    assert main(["check", output, "--arm", arm, "--json", str(tmp_path / "verdict.json")]) == 1
-    (fault,) = [finding for finding in json.loads((tmp_path / "verdict.json").read_text())["findings"]
-                if not finding["passed"]]
+    assert main(["check", output, "--arm", arm, "--json", str(tmp_path / "check result.json")]) == 1
+    (fault,) = [
+        finding
+        for finding in json.loads((tmp_path / "check result.json").read_text())["findings"]
+        if not finding["passed"]
+    ]
     assert fault["check"] == "links apart" and fault["worst"] < -5 and fault["place"]["stroke"] == 2
     assert main([str(drawing), "-o", output, "--arm", arm, "--margin", "0", "--quiet"]) == 0
     capsys.readouterr()
@@ -68,7 +72,8 @@ def test_an_arm_that_folds_without_thickness_does_not_with_it(
 
 
 def test_a_method_that_runs_into_itself_is_refused_or_left_out(
-        drawing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    drawing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     arm, output = str(arm_file(tmp_path, q2=38.0, q4=38.0)), tmp_path / "lines.csv"
     arguments = [str(drawing), "-o", str(output), "--arm", arm, "--method", "dls", "--margin", "0", "--quiet"]
     assert main(arguments) == 3
@@ -81,58 +86,69 @@ def test_a_method_that_runs_into_itself_is_refused_or_left_out(
     assert set(read_trajectory(output).stroke.tolist()) == {TRAVELLING, 0, 1}
 
 
-def test_hops_between_postures_that_collide_are_told() -> None:
+def test_hops_between_configurations_that_collide_are_told() -> None:
     """At its inner edge the field of the thin arm folds."""
-    arm, field = thick(load_once("drawing_arm")), posture_field(load_once("drawing_arm"))
+    arm, field = thick(load_once("drawing_arm")), configuration_map_of(load_once("drawing_arm"))
     tips = np.array([[field.radii_mm[0] + 0.1, 0.0], [100.0, 0.0]])
-    postures, _ = field.postures_at(np.column_stack((tips, np.zeros(2))))
-    near, far = (Touch(tip, posture) for tip, posture in zip(tips, postures, strict=True))
-    rules = HopRules(1.0, 5.0, 30.0, 100.0, 0.05)
-    portion = HopPortion(Kit.of(arm, PlanSettings()), rules, [None, far, near], [far, near, None])
-    clear, comes, goes = (hop.collision for hop in planned_hops(portion))
+    configurations, _ = field.configurations_at(np.column_stack((tips, np.zeros(2))))
+    near, far = (Contact(tip, configuration) for tip, configuration in zip(tips, configurations, strict=True))
+    rules = TravelRules(1.0, 5.0, 30.0, 100.0, 0.05)
+    chunk = TravelChunk(PlanContext.of(arm, PlanSettings()), rules, [None, far, near], [far, near, None])
+    clear, comes, goes = (move.collision for move in planned_travel_moves(chunk))
     assert clear is None and comes is not None and goes is not None
-    assert (goes.links, goes.posture) == (("link q1", "link q4"), 0)
+    assert (goes.links, goes.configuration) == (("link q1", "link q4"), 0)
     assert comes.clearance_mm == pytest.approx(goes.clearance_mm) and goes.clearance_mm < -5
 
 
 def test_strokes_that_no_hop_gets_to_are_refused_or_left_out(drawing: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever comes to the stroke near the base collides."""
-    def colliding(portion: HopPortion) -> list[Hop]:
-        bad = [meet is not None and abs(meet.tip_mm[1]) < 20 and meet.tip_mm[0] < 40 for meet in portion.meet]
-        return [replace(hop, collision=Collision(("link q2", "link q4"), -1.5, len(hop.joints) - 1)) if is_bad else hop
-                for hop, is_bad in zip(planned_hops(portion), bad, strict=True)]
+
+    def colliding(chunk: TravelChunk) -> list[TravelMove]:
+        bad = [meet is not None and abs(meet.tip_mm[1]) < 20 and meet.tip_mm[0] < 40 for meet in chunk.meet]
+        return [
+            replace(move, collision=Collision(("link q2", "link q4"), -1.5, len(move.joints) - 1)) if is_bad else move
+            for move, is_bad in zip(planned_travel_moves(chunk), bad, strict=True)
+        ]
 
     def unheard(stage: str, done: int, total: int) -> None:
         pass
 
-    monkeypatch.setattr(pipeline, "planned_hops", colliding)
+    monkeypatch.setattr(pipeline, "planned_travel_moves", colliding)
     with pytest.raises(LinksCollide, match=r"before stroke 2 there would be -1\.50 mm between link q2 and") as told:
         plan(drawing, PlanSettings(margin_mm=0.0), unheard, ALONE)
     assert (told.value.stroke, told.value.links, told.value.exit_code) == (2, ("link q2", "link q4"), 3)
     made = plan(drawing, PlanSettings(margin_mm=0.0, skip_unreachable=True), unheard, ALONE)
     assert set(made.trajectory.stroke.tolist()) == {TRAVELLING, 0, 1}
-    verdict = check_trajectory(made.trajectory, load_once("drawing_arm"), read_drawing(drawing))
-    assert verdict.passed, verdict.text()
-    assert "left out as asked" in verdict.text()
+    check_result = check_trajectory(made.trajectory, load_once("drawing_arm"), read_drawing(drawing))
+    assert check_result.passed, check_result.text()
+    assert "left out as asked" in check_result.text()
     assert "left out whole, as links would collide before or after them: 1 stroke" in made.summary.warnings
 
 
-def resting(posture_deg: list[float]) -> Trajectory:
+def resting(configuration_deg: list[float]) -> Trajectory:
     """The drawing arm with its pen up."""
     count = 12
-    return Trajectory("drawing_arm", "", "hand", 100.0, load_once("drawing_arm").column_names,
-                      np.tile(posture_deg, (count, 1)), np.zeros(count, dtype=bool), np.full(count, TRAVELLING),
-                      (1.0, 0.0, 0.0, 1.0, 0.0, 0.0))
+    return Trajectory(
+        "drawing_arm",
+        "",
+        "hand",
+        100.0,
+        load_once("drawing_arm").column_names,
+        np.tile(configuration_deg, (count, 1)),
+        np.zeros(count, dtype=bool),
+        np.full(count, TRAVELLING),
+        (1.0, 0.0, 0.0, 1.0, 0.0, 0.0),
+    )
 
 
 def test_a_trajectory_that_folds_is_found_by_the_check() -> None:
     arm = thick(load_once("drawing_arm"), q3=20.0, q4=20.0)
     folded, open_ = [0.0, 120.0, 0.0, -150.0, -60.0], [0.0, 120.0, -60.0, -90.0, -60.0]
-    for posture, diameter, fault in ((folded, 24.0, False), (folded, 26.0, True), (open_, 26.0, False)):
-        verdict = check_trajectory(resting(posture), thick(arm, q3=diameter, q4=diameter))
-        (finding,) = [one for one in verdict.findings if one.check == "links apart"]
-        assert finding.passed is not fault, verdict.text()
-        if posture is folded:  # 50 sin(30 degrees) from the axis
+    for configuration, diameter, fault in ((folded, 24.0, False), (folded, 26.0, True), (open_, 26.0, False)):
+        check_result = check_trajectory(resting(configuration), thick(arm, q3=diameter, q4=diameter))
+        (finding,) = [one for one in check_result.findings if one.check == "links apart"]
+        assert finding.passed is not fault, check_result.text()
+        if configuration is folded:  # 50 sin(30 degrees) from the axis
             assert finding.worst == pytest.approx(25 - diameter) and "between q3 and q4" in finding.remark
         else:
             assert finding.worst is None
@@ -140,11 +156,14 @@ def test_a_trajectory_that_folds_is_found_by_the_check() -> None:
 
 def test_a_thick_link_in_the_paper_is_found_by_the_check() -> None:
     """The corner between q3 and q4 is 50 + 50 sin(20 degrees) - 50 mm high."""
-    posture = [0.0, 20.0, -110.0, 90.0, -90.0]
+    configuration = [0.0, 20.0, -110.0, 90.0, -90.0]
     for diameter, fault in ((34.0, False), (35.0, True)):
         arm = thick(load_once("drawing_arm"), q3=diameter)
-        (finding,) = [one for one in check_trajectory(resting(posture), arm).findings
-                      if one.check == "links below the paper"]
+        (finding,) = [
+            one
+            for one in check_trajectory(resting(configuration), arm).findings
+            if one.check == "links below the paper"
+        ]
         assert finding.passed is not fault
         if fault:
             assert finding.worst == pytest.approx(17.5 - 50 * np.sin(np.radians(20)))

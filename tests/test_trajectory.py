@@ -31,9 +31,16 @@ def trajectories(draw: st.DrawFn) -> Trajectory:
     seed = draw(st.integers(0, 2**32 - 1))
     positions = np.random.default_rng(seed).uniform(-720, 720, (n, len(units)))
     return Trajectory(
-        arm=draw(words.filter(str.strip)), drawing=draw(words), method=draw(words), rate_hz=draw(st.floats(0.1, 5000)),
-        columns=tuple(f"j{index}_{unit}" for index, unit in enumerate(units)), positions=positions, pen=pen,
-        stroke=stroke, svg_to_arm_mm=draw(st.tuples(*[coordinates] * 6)))
+        arm=draw(words.filter(str.strip)),
+        drawing=draw(words),
+        method=draw(words),
+        rate_hz=draw(st.floats(0.1, 5000)),
+        columns=tuple(f"j{index}_{unit}" for index, unit in enumerate(units)),
+        positions=positions,
+        pen=pen,
+        stroke=stroke,
+        svg_to_arm_mm=draw(st.tuples(*[coordinates] * 6)),
+    )
 
 
 def sample(n: int = 40) -> Trajectory:
@@ -57,7 +64,10 @@ def test_round_trip_changes_nothing(tmp_path_factory: pytest.TempPathFactory, tr
     again = read_trajectory(target)
     assert (again.arm, again.drawing, again.method) == (trajectory.arm, trajectory.drawing, trajectory.method)
     assert (again.rate_hz, again.columns, again.svg_to_arm_mm) == (
-        trajectory.rate_hz, trajectory.columns, trajectory.svg_to_arm_mm)
+        trajectory.rate_hz,
+        trajectory.columns,
+        trajectory.svg_to_arm_mm,
+    )
     assert again.duration_s == trajectory.duration_s
     np.testing.assert_allclose(again.positions, trajectory.positions, rtol=0, atol=0.51e-9)
     np.testing.assert_array_equal(again.pen, trajectory.pen)
@@ -72,9 +82,16 @@ def test_written_again_the_file_is_the_same(file: Path, tmp_path: Path) -> None:
 def test_layout_is_the_documented_one(file: Path) -> None:
     lines = file.read_text(encoding="utf-8").splitlines()
     assert lines[:9] == [
-        "# trajectory: 1", "# arm: two", "# drawing: line.svg", "# method: path", "# rate_hz: 100",
-        "# duration_s: 0.39", "# svg_to_arm_mm: 0.0 -0.25 -0.25 0.0 133.2 60.1", "t_s,q1_deg,d2_mm,pen,stroke",
-        "0.000000,0.000000000,10.000000000,0,-1"]
+        "# trajectory: 1",
+        "# arm: two",
+        "# drawing: line.svg",
+        "# method: path",
+        "# rate_hz: 100",
+        "# duration_s: 0.39",
+        "# svg_to_arm_mm: 0.0 -0.25 -0.25 0.0 133.2 60.1",
+        "t_s,q1_deg,d2_mm,pen,stroke",
+        "0.000000,0.000000000,10.000000000,0,-1",
+    ]
     assert lines[9 + 4].endswith(",1,0")
 
 
@@ -85,9 +102,11 @@ def test_samples_know_their_lines(file: Path, tmp_path: Path) -> None:
     assert read_trajectory(longer).line(3) == 13
 
 
-@pytest.mark.parametrize("change", [
-    lambda text: "\ufeff" + text, lambda text: text.replace("\n", "\r\n"), lambda text: text.rstrip("\n")],
-    ids=["byte order mark", "windows line ends", "no last line end"])
+@pytest.mark.parametrize(
+    "change",
+    [lambda text: "\ufeff" + text, lambda text: text.replace("\n", "\r\n"), lambda text: text.rstrip("\n")],
+    ids=["byte order mark", "windows line ends", "no last line end"],
+)
 def test_editors_habits_are_no_damage(file: Path, tmp_path: Path, change) -> None:
     edited = tmp_path / "edited.csv"
     edited.write_text(change(file.read_text()), encoding="utf-8", newline="")
@@ -97,7 +116,8 @@ def test_editors_habits_are_no_damage(file: Path, tmp_path: Path, change) -> Non
 def edit(line: int, old: str, new: str):
     def apply(lines: list[str]) -> list[str]:
         assert old in lines[line - 1]
-        return [*lines[:line - 1], lines[line - 1].replace(old, new, 1), *lines[line:]]
+        return [*lines[: line - 1], lines[line - 1].replace(old, new, 1), *lines[line:]]
+
     return apply
 
 
@@ -154,7 +174,8 @@ def test_damage_is_named_with_its_line(file: Path, tmp_path: Path, kind: str) ->
 
 @given(position=st.floats(0, 1), byte=st.integers(0, 255))
 def test_any_changed_byte_is_read_or_refused(
-        file: Path, tmp_path_factory: pytest.TempPathFactory, position: float, byte: int) -> None:
+    file: Path, tmp_path_factory: pytest.TempPathFactory, position: float, byte: int
+) -> None:
     content = bytearray(file.read_bytes())
     content[int(position * (len(content) - 1))] = byte
     damaged = tmp_path_factory.getbasetemp() / "byte.csv"
@@ -277,8 +298,17 @@ def test_permissions_are_the_usual_ones(tmp_path: Path) -> None:
 
 def test_file_names_that_are_no_unicode_do_not_matter(tmp_path: Path) -> None:
     odd = sample()
-    odd = Trajectory(odd.arm, "caf\udce9.svg\n# arm: other", odd.method, odd.rate_hz, odd.columns, odd.positions,
-                     odd.pen, odd.stroke, odd.svg_to_arm_mm)
+    odd = Trajectory(
+        odd.arm,
+        "caf\udce9.svg\n# arm: other",
+        odd.method,
+        odd.rate_hz,
+        odd.columns,
+        odd.positions,
+        odd.pen,
+        odd.stroke,
+        odd.svg_to_arm_mm,
+    )
     write_trajectory(odd, tmp_path / "traj.csv")
     again = read_trajectory(tmp_path / "traj.csv")
     assert (again.arm, again.drawing) == ("two", "caf?.svg # arm: other")
@@ -287,8 +317,17 @@ def test_file_names_that_are_no_unicode_do_not_matter(tmp_path: Path) -> None:
 def test_large_files_are_quick(tmp_path: Path) -> None:
     n = 100_000
     stroke = np.full(n, TRAVELLING)
-    large = Trajectory("five", "large.svg", "path", 100.0, tuple(f"q{k}_deg" for k in range(5)),
-                       np.random.default_rng(1).uniform(-150, 150, (n, 5)), stroke >= 0, stroke, AFFINE)
+    large = Trajectory(
+        "five",
+        "large.svg",
+        "path",
+        100.0,
+        tuple(f"q{k}_deg" for k in range(5)),
+        np.random.default_rng(1).uniform(-150, 150, (n, 5)),
+        stroke >= 0,
+        stroke,
+        AFFINE,
+    )
     begin = time.process_time()
     write_trajectory(large, tmp_path / "large.csv")
     again = read_trajectory(tmp_path / "large.csv")
@@ -297,8 +336,18 @@ def test_large_files_are_quick(tmp_path: Path) -> None:
 
 
 def test_the_decimals_of_each_position_are_counted(tmp_path: Path) -> None:
-    cells = {"1.5": 1, "-12.123456": 6, "3": 0, "0.123456789": 9, "1.25e-3": 5, "2.5E2": 0, " 7.1234567 ": 7, "1e-7": 7,
-             "0.1234567890123456": 16, "+4.": 0}
+    cells = {
+        "1.5": 1,
+        "-12.123456": 6,
+        "3": 0,
+        "0.123456789": 9,
+        "1.25e-3": 5,
+        "2.5E2": 0,
+        " 7.1234567 ": 7,
+        "1e-7": 7,
+        "0.1234567890123456": 16,
+        "+4.": 0,
+    }
     file = tmp_path / "traj.csv"
     rows = [f"{index / 100:.6f},{cell},0.1234567,0,-1" for index, cell in enumerate(cells)]
     head = sample(len(rows)).head.text()
@@ -307,13 +356,14 @@ def test_the_decimals_of_each_position_are_counted(tmp_path: Path) -> None:
     assert trajectory.decimals is not None
     assert trajectory.decimals[:, 0].tolist() == list(cells.values())
     assert set(trajectory.decimals[:, 1].tolist()) == {7}
-    wanted = [0.5 * 10.0**-max(count, 6) for count in cells.values()]
+    wanted = [0.5 * 10.0 ** -max(count, 6) for count in cells.values()]
     np.testing.assert_allclose(trajectory.rounding[:, 0], wanted, atol=4e-13)
 
 
 @given(trajectories())
 def test_what_is_written_is_within_its_rounding(
-        tmp_path_factory: pytest.TempPathFactory, trajectory: Trajectory) -> None:
+    tmp_path_factory: pytest.TempPathFactory, trajectory: Trajectory
+) -> None:
     target = tmp_path_factory.getbasetemp() / "rounded.csv"
     write_trajectory(trajectory, target)
     read = read_trajectory(target)
@@ -328,7 +378,8 @@ PLACED = Placement((33.0, 114.5, -93.25, 93.25), 5.0, 1.966, 17.5, mirror=True)
 @pytest.mark.parametrize("placement", [Placement(), Placement(scale=2.0), Placement(margin_mm=0.0), PLACED])
 @pytest.mark.parametrize("left_out", [LeftOut(), LeftOut(37.25, 2), LeftOut(0.0, 1)])
 def test_the_placement_and_what_was_left_out_are_read_back(
-        placement: Placement, left_out: LeftOut, tmp_path: Path) -> None:
+    placement: Placement, left_out: LeftOut, tmp_path: Path
+) -> None:
     written = replace(sample(), placement=placement, left_out=left_out)
     write_trajectory(written, tmp_path / "traj.csv")
     read = read_trajectory(tmp_path / "traj.csv")
@@ -336,15 +387,18 @@ def test_the_placement_and_what_was_left_out_are_read_back(
     assert read.line(3) == written.line(3)
 
 
-@pytest.mark.parametrize(("entry", "reason"), [
-    ("canvas_mm: 1 2 3", r"line 8: '# canvas_mm:' is '1 2 3'; wanted 4 number"),
-    ("margin_mm: wide", r"line 8: '# margin_mm:' is 'wide'"),
-    ("scale: nan", r"line 8: '# scale:' is 'nan'"),
-    ("rotate_deg:", r"line 8: '# rotate_deg:' is ''"),
-    ("mirror: maybe", r"line 8: '# mirror:' is 'maybe'; wanted yes or no"),
-    ("left_out_mm: -1", r"line 8: '# left_out_mm:' is -1"),
-    ("left_out_taps: 1.5", r"line 8: '# left_out_taps:' is 1.5"),
-])
+@pytest.mark.parametrize(
+    ("entry", "reason"),
+    [
+        ("canvas_mm: 1 2 3", r"line 8: '# canvas_mm:' is '1 2 3'; wanted 4 number"),
+        ("margin_mm: wide", r"line 8: '# margin_mm:' is 'wide'"),
+        ("scale: nan", r"line 8: '# scale:' is 'nan'"),
+        ("rotate_deg:", r"line 8: '# rotate_deg:' is ''"),
+        ("mirror: maybe", r"line 8: '# mirror:' is 'maybe'; wanted yes or no"),
+        ("left_out_mm: -1", r"line 8: '# left_out_mm:' is -1"),
+        ("left_out_taps: 1.5", r"line 8: '# left_out_taps:' is 1.5"),
+    ],
+)
 def test_a_damaged_placement_is_named(entry: str, reason: str, tmp_path: Path) -> None:
     file = tmp_path / "traj.csv"
     write_trajectory(sample(), file)

@@ -42,13 +42,13 @@ def coverage(drawn: Sequence[FloatArray], wanted: Sequence[FloatArray]) -> Cover
         touched = np.zeros_like(there)
         for one in np.unique(owner[nearest]):
             cells = nearest[owner[nearest] == one]
-            touched[cells.min():cells.max() + 1] = True
+            touched[cells.min() : cells.max() + 1] = True
         again_mm.append(_CELL_MM * float((touched & there).sum()))
         there |= touched
     missing = ~there
     for begin, end in pairwise(starts.tolist()):
         ends = min(round(_ENDS_MM / _CELL_MM), (end - begin - 1) // 2)
-        missing[begin:begin + ends] = missing[end - ends:end] = False
+        missing[begin : begin + ends] = missing[end - ends : end] = False
     return Coverage(np.concatenate(off_mm), _CELL_MM * float(missing.sum()), again_mm)
 
 

@@ -21,18 +21,62 @@ from mutations import mutated
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 _LARGEST_BYTES = 30_000
-_PIECES = tuple(re.compile(pattern, re.DOTALL) for pattern in (
-    rb"<[a-zA-Z][^<>]*/>", rb'\s[\w:-]+="[^"]*"', rb'"[^"]*"', rb"[MmLlHhVvCcSsQqTtAaZz][^\"MmLlHhVvCcSsQqTtAaZz]*",
-    rb"<(\w+)[^<>]*>[^<>]*</\1>", rb"</?[a-zA-Z][^<>]*>"))
-_WORDS = tuple(word.encode() for word in (
-    '<use href="#a"/>', '<g transform="scale(1e9)">', "</g>", "<g>", 'transform="matrix(0 0 0 0 0 0)"', "skewX(90)",
-    'clip-path="url(#a)"', 'mask="url(#a)"', 'id="a"', '<path d="M1 1h0"/>', "M0 0", "z", "A1 1 0 0 1",
-    "A1e9 1e-9 7 1 0",
-    'stroke-dasharray="1e-9"', "<!--", "]]>", "<![CDATA[", "&#0;", "&amp;", "\0", "\ufeff", 'viewBox="0 0 0 0"',
-    'preserveAspectRatio="xMaxYMin slice"', 'width="1e9"', "<symbol>", "<marker id='a'>",
-    "<style>*{marker:url(#a)}</style>",
-    '<text>a</text>', '<image href="x"/>', "<switch>", '<svg viewBox="0 0 1 1">', "</svg>", 'style="display:none"', "%",
-    'fill="url(#a)"', '<pattern id="a">', 'xml:space="preserve"', 'font-size="1e9"', 'd="M0 0L1e8 1e-8"'))
+_PIECES = tuple(
+    re.compile(pattern, re.DOTALL)
+    for pattern in (
+        rb"<[a-zA-Z][^<>]*/>",
+        rb'\s[\w:-]+="[^"]*"',
+        rb'"[^"]*"',
+        rb"[MmLlHhVvCcSsQqTtAaZz][^\"MmLlHhVvCcSsQqTtAaZz]*",
+        rb"<(\w+)[^<>]*>[^<>]*</\1>",
+        rb"</?[a-zA-Z][^<>]*>",
+    )
+)
+_WORDS = tuple(
+    word.encode()
+    for word in (
+        '<use href="#a"/>',
+        '<g transform="scale(1e9)">',
+        "</g>",
+        "<g>",
+        'transform="matrix(0 0 0 0 0 0)"',
+        "skewX(90)",
+        'clip-path="url(#a)"',
+        'mask="url(#a)"',
+        'id="a"',
+        '<path d="M1 1h0"/>',
+        "M0 0",
+        "z",
+        "A1 1 0 0 1",
+        "A1e9 1e-9 7 1 0",
+        'stroke-dasharray="1e-9"',
+        "<!--",
+        "]]>",
+        "<![CDATA[",
+        "&#0;",
+        "&amp;",
+        "\0",
+        "\ufeff",
+        'viewBox="0 0 0 0"',
+        'preserveAspectRatio="xMaxYMin slice"',
+        'width="1e9"',
+        "<symbol>",
+        "<marker id='a'>",
+        "<style>*{marker:url(#a)}</style>",
+        "<text>a</text>",
+        '<image href="x"/>',
+        "<switch>",
+        '<svg viewBox="0 0 1 1">',
+        "</svg>",
+        'style="display:none"',
+        "%",
+        'fill="url(#a)"',
+        '<pattern id="a">',
+        'xml:space="preserve"',
+        'font-size="1e9"',
+        'd="M0 0L1e8 1e-8"',
+    )
+)
 
 
 @cache

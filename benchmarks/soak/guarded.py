@@ -62,12 +62,13 @@ def judged(name: str, code: int, said: str, allowed: dict[int, str]) -> str:
     return f"{_FINE}{allowed[code]}"
 
 
-def outcomes(attempt: Callable[[int, Path], tuple[str, str]], items: range, folder: Path, n_processes: int
-             ) -> Iterator[Outcome]:
+def outcomes(
+    attempt: Callable[[int, Path], tuple[str, str]], items: range, folder: Path, n_processes: int
+) -> Iterator[Outcome]:
     """The outcome of each item, as they come. `attempt` gets the item and a folder that is its process's own."""
     todo = iter(items)
-    crew = [_Guarded(attempt, folder / f"desk{index}") for index in range(n_processes)]
-    busy = [one for one in crew if one.begin(next(todo, None))]
+    executor = [_Guarded(attempt, folder / f"desk{index}") for index in range(n_processes)]
+    busy = [one for one in executor if one.begin(next(todo, None))]
     try:
         while busy:
             time.sleep(_LOOK_S)
@@ -78,7 +79,7 @@ def outcomes(attempt: Callable[[int, Path], tuple[str, str]], items: range, fold
                     if not one.begin(next(todo, None)):
                         busy.remove(one)
     finally:
-        for one in crew:
+        for one in executor:
             one.end()
 
 

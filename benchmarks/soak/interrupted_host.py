@@ -120,8 +120,10 @@ class Host:
     def _damaged(self, message: bytes) -> bytes:
         if self.controller.now_s() >= self._errors_until_s:
             return message
-        return bytes(byte ^ 1 << int(self.random.integers(8)) if self.random.random() < self._error_rate else byte
-                     for byte in message)
+        return bytes(
+            byte ^ 1 << int(self.random.integers(8)) if self.random.random() < self._error_rate else byte
+            for byte in message
+        )
 
     def _kill(self) -> None:
         os.kill(os.getpid(), signal.SIGKILL)
@@ -175,8 +177,15 @@ def _taken(line: port.Line, usual_baud: int) -> port.Port:
 
 
 _BEFALLS: dict[Kind, Callable[[Host], None]] = {
-    Kind.KILL: Host._kill, Kind.HANG_UP: Host._hang_up, Kind.TERMINATE: Host._terminate, Kind.CABLE: Host._pull_cable,
-    Kind.RESET: Host._reset, Kind.POWER: Host._lose_power, Kind.KILL_AND_RESET: Host._kill,
-    Kind.KILL_AND_POWER: Host._kill, Kind.ERRORS: Host._err, Kind.DISK: Host._fill_disk,
+    Kind.KILL: Host._kill,
+    Kind.HANG_UP: Host._hang_up,
+    Kind.TERMINATE: Host._terminate,
+    Kind.CABLE: Host._pull_cable,
+    Kind.RESET: Host._reset,
+    Kind.POWER: Host._lose_power,
+    Kind.KILL_AND_RESET: Host._kill,
+    Kind.KILL_AND_POWER: Host._kill,
+    Kind.ERRORS: Host._err,
+    Kind.DISK: Host._fill_disk,
     Kind.SECOND: Host._start_second,
 }

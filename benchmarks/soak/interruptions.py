@@ -25,20 +25,23 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from benchmarks.soak.coverage import coverage
 from benchmarks.soak.interrupted_host import Host, Kind
-from hardware.drawn import drawn_lines
+from hardware.simulation.ink import drawn_lines
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.cli import main
 from planner.trajectory import read_trajectory
+from tests.hardware.drivers.native.paper import ink
 from tests.hardware.emulator.emulator import Build, LockStep, build, in_lock_step
-from tests.hardware.native.paper import ink
 
 _CONFIGS = Path(__file__).resolve().parents[2] / "configs"
-_DRAWING = ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 40"><path d="'
-            + "".join(f"M{x} 5v8" for x in range(5, 85, 4)) + '"/>'
-            + "".join(f'<path d="M{x} 18c4 -4 8 6 12 0"/>' for x in range(5, 80, 16))
-            + '<path d="M10 30h0M20 30h0M30 30h0"/><path d="M36 28l6 8 6 -8 6 8 6 -8 6 8 6 -8 6 8"/></svg>')
+_DRAWING = (
+    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 40"><path d="'
+    + "".join(f"M{x} 5v8" for x in range(5, 85, 4))
+    + '"/>'
+    + "".join(f'<path d="M{x} 18c4 -4 8 6 12 0"/>' for x in range(5, 80, 16))
+    + '<path d="M10 30h0M20 30h0M30 30h0"/><path d="M36 28l6 8 6 -8 6 8 6 -8 6 8 6 -8 6 8"/></svg>'
+)
 _MARGIN_MM = 30
 _STRIKES_WITHIN_S = 5.0
 _LEFT_ALONE_S = (0.0, 0.5, 8.0)
@@ -53,14 +56,27 @@ _FASTEST_MM_S = 80.0
 _SET_POINT_S = 0.012
 _TOLD_S = 0.025
 """So long after it has come somewhere a controller says so, once all servos have been told."""
-_DOUBT_S = {Kind.RESET: _SET_POINT_S + _TOLD_S, Kind.KILL_AND_RESET: _SET_POINT_S + _TOLD_S, Kind.POWER: 0.1,
-            Kind.KILL_AND_POWER: 0.75}
+_DOUBT_S = {
+    Kind.RESET: _SET_POINT_S + _TOLD_S,
+    Kind.KILL_AND_RESET: _SET_POINT_S + _TOLD_S,
+    Kind.POWER: 0.1,
+    Kind.KILL_AND_POWER: 0.75,
+}
 """Of drawing, that may be drawn twice: where the controller lost its memory what was not noted, where it was reset
 while it moved what not all servos had been told, else one set point."""
-_ENDINGS = {Kind.KILL: {-9}, Kind.KILL_AND_RESET: {-9}, Kind.KILL_AND_POWER: {-9}, Kind.HANG_UP: {0, 130},
-            Kind.TERMINATE: {0, 130}, Kind.CABLE: {4}, Kind.RESET: {0, 4}, Kind.POWER: {0, 4},
-            Kind.ERRORS: {0, 4},
-            Kind.DISK: {0, 2}, Kind.SECOND: {0}}
+_ENDINGS = {
+    Kind.KILL: {-9},
+    Kind.KILL_AND_RESET: {-9},
+    Kind.KILL_AND_POWER: {-9},
+    Kind.HANG_UP: {0, 130},
+    Kind.TERMINATE: {0, 130},
+    Kind.CABLE: {4},
+    Kind.RESET: {0, 4},
+    Kind.POWER: {0, 4},
+    Kind.ERRORS: {0, 4},
+    Kind.DISK: {0, 2},
+    Kind.SECOND: {0},
+}
 """Exit codes; those of a run that several things befell are of any of them. 0 after a reset, too: it may come before
 the run has set out."""
 
@@ -77,8 +93,15 @@ class Row:
     def cells(self, kind: Kind) -> list[str]:
         ends = ", ".join(f"{code}: {times}" for code, times in sorted(self.endings.items()))
         again_mm = self.again_mm or [0.0]
-        return [kind.value, str(self.struck), ends, str(sum(mm > 0 for mm in self.again_mm)),
-                f"{np.mean(again_mm):.2f}", f"{max(again_mm):.1f}", f"{_allowed_mm(kind):.1f}"]
+        return [
+            kind.value,
+            str(self.struck),
+            ends,
+            str(sum(mm > 0 for mm in self.again_mm)),
+            f"{np.mean(again_mm):.2f}",
+            f"{max(again_mm):.1f}",
+            f"{_allowed_mm(kind):.1f}",
+        ]
 
 
 @dataclass(frozen=True)
@@ -109,8 +132,10 @@ def subject_in(folder: Path, drawing: Path | None) -> Subject:
     def servo(_: re.Match[str]) -> str:
         channel = next(channels)
         zero_us = 1500.0 - us_per_deg[channel] * (low + high)[channel] / 2
-        return (f"servo = {{ channel = {channel}, pulse_at_zero_us = {zero_us:.3f}, "
-                f"us_per_deg = {us_per_deg[channel]:.3f}, pulse_range_us = [400.0, 2600.0] }}")
+        return (
+            f"servo = {{ channel = {channel}, pulse_at_zero_us = {zero_us:.3f}, "
+            f"us_per_deg = {us_per_deg[channel]:.3f}, pulse_range_us = [400.0, 2600.0] }}"
+        )
 
     arm_file = folder / "drawing_arm.toml"
     arm_file.write_text(re.sub(r"^servo = .*$", servo, (_CONFIGS / "drawing_arm.toml").read_text(), flags=re.MULTILINE))
@@ -121,8 +146,9 @@ def subject_in(folder: Path, drawing: Path | None) -> Subject:
 class Soak:
     """Draws one drawing after the other, and keeps the account."""
 
-    def __init__(self, built: Build, subject: Subject, folder: Path, random: np.random.Generator,
-                 kinds: list[Kind]) -> None:
+    def __init__(
+        self, built: Build, subject: Subject, folder: Path, random: np.random.Generator, kinds: list[Kind]
+    ) -> None:
         self._built, self._subject, self._folder, self._random, self._kinds = built, subject, folder, random, kinds
         self.rows = {kind: Row() for kind in kinds}
         self.wrong: list[str] = []
@@ -148,9 +174,25 @@ class Soak:
         for _ in range(_RUNS_PER_DRAWING):
             resume = ["--resume"] if csv.with_name("traj.csv.journal").exists() else []
             strikes_s = controller.now_s() + self._random.uniform(0.0, _STRIKES_WITHIN_S)
-            code, told = Host(controller, ["run", str(csv), "--driver", "native", "--port", str(folder / "emulated"),
-                                           "--arm", str(self._subject.arm_file), "--quiet", *resume],
-                              folder / "log.txt", self._random.spawn(1)[0], self._kinds, strikes_s).run()
+            code, told = Host(
+                controller,
+                [
+                    "run",
+                    str(csv),
+                    "--driver",
+                    "native",
+                    "--port",
+                    str(folder / "emulated"),
+                    "--arm",
+                    str(self._subject.arm_file),
+                    "--quiet",
+                    *resume,
+                ],
+                folder / "log.txt",
+                self._random.spawn(1)[0],
+                self._kinds,
+                strikes_s,
+            ).run()
             controller.catch_up()
             kinds = self._note(told, code)
             if code == 0:
@@ -184,8 +226,10 @@ class Soak:
     def _leave_alone(self, controller: LockStep, kinds: list[Kind]) -> None:
         """Until somebody resumes."""
         controller.sleep_until(controller.now_s() + self._random.uniform(0.0, self._random.choice(_LEFT_ALONE_S)))
-        for kind, what in ((Kind.KILL_AND_RESET, controller.emulator.reset),
-                           (Kind.KILL_AND_POWER, controller.emulator.lose_power)):
+        for kind, what in (
+            (Kind.KILL_AND_RESET, controller.emulator.reset),
+            (Kind.KILL_AND_POWER, controller.emulator.lose_power),
+        ):
             if kind in kinds:
                 what()
                 controller.sleep_until(controller.now_s() + _STARTS_S)
@@ -197,8 +241,10 @@ class Soak:
         self.off_mm.append(found.off_mm)
         self.missing_mm = max(self.missing_mm, found.missing_mm)
         most_mm, worst_mm = _most_and_worst(found.off_mm)
-        for excess, what in ((max(most_mm - _OFF_MM, worst_mm - _WORST_MM), f"{worst_mm:.3f} mm beside its line"),
-                             (found.missing_mm, f"{found.missing_mm:.1f} mm missing")):
+        for excess, what in (
+            (max(most_mm - _OFF_MM, worst_mm - _WORST_MM), f"{worst_mm:.3f} mm beside its line"),
+            (found.missing_mm, f"{found.missing_mm:.1f} mm missing"),
+        ):
             if excess > 0:
                 self.wrong.append(f"drawing {self.drawings}: {what}")
         doubted: list[Kind] = []
@@ -231,27 +277,43 @@ def _main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-n", type=int, default=1000, help="interruptions (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--only", nargs="+", choices=[kind.name for kind in Kind], default=[kind.name for kind in Kind],
-                        metavar="KIND", help=", ".join(kind.name for kind in Kind))
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        choices=[kind.name for kind in Kind],
+        default=[kind.name for kind in Kind],
+        metavar="KIND",
+        help=", ".join(kind.name for kind in Kind),
+    )
     parser.add_argument("--drawing", type=Path, help="instead of its own; its lines keep away from each other")
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="journals, logs and pins stay there")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         folder = options.keep or Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
-        soak = Soak(build(folder / "build"), subject_in(folder, options.drawing), folder,
-                    np.random.default_rng(options.seed), [Kind[name] for name in options.only])
+        soak = Soak(
+            build(folder / "build"),
+            subject_in(folder, options.drawing),
+            folder,
+            np.random.default_rng(options.seed),
+            [Kind[name] for name in options.only],
+        )
         while soak.struck < options.n:
             known = len(soak.wrong)
             soak.draw()
             print("\n".join(soak.wrong[known:]), end="\n" * (len(soak.wrong) > known), file=sys.stderr)
-            print(f"{soak.struck} interruptions, {soak.drawings} drawings, {len(soak.wrong)} wrong", file=sys.stderr,
-                  flush=True)
+            print(
+                f"{soak.struck} interruptions, {soak.drawings} drawings, {len(soak.wrong)} wrong",
+                file=sys.stderr,
+                flush=True,
+            )
     print(_table(soak))
     most_mm, worst_mm = _most_and_worst(np.concatenate(soak.off_mm))
-    print(f"{soak.struck} interruptions of {soak.drawings} drawings; 999 in 1000 pieces of ink within {most_mm:.3f} mm "
-          f"of their line, all within {worst_mm:.3f} mm; {soak.missing_mm:.1f} mm missing at most; "
-          f"{len(soak.wrong)} wrong")
+    print(
+        f"{soak.struck} interruptions of {soak.drawings} drawings; 999 in 1000 pieces of ink within {most_mm:.3f} mm "
+        f"of their line, all within {worst_mm:.3f} mm; {soak.missing_mm:.1f} mm missing at most; "
+        f"{len(soak.wrong)} wrong"
+    )
     print("\n".join(soak.wrong))
     return 1 if soak.wrong else 0
 

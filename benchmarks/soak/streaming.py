@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from planner.cli import main as plan
-from tests.hardware.streaming.soak import Outcome, Soak
+from tests.hardware.drivers.streaming.soak import Outcome, Soak
 
 _DRIVERS = ("maestro", "ssc32")
 _STROKES = "".join(f"M{x} {5 + x % 4}v8" for x in range(5, 85, 2)) + "".join(f"M{x} 20h0" for x in range(5, 85, 8))
@@ -54,11 +54,14 @@ def _is_sound(outcome: Outcome, bound_mm: float) -> bool:
 
 def _row(driver: str, outcomes: list[Outcome], bound_mm: float) -> str:
     dead, reset, twice = (sum(getattr(one, name) for one in outcomes) for name in ("dead", "reset", "twice"))
-    lost, claimed, undoubted = (sum(len(getattr(one, name)) for one in outcomes)
-                                for name in ("lost", "claimed", "undoubted"))
-    return (f"{driver}: {len(outcomes)} drawings, {dead} deaths and {reset} resets; {lost} strokes lost, {claimed} "
-            f"claimed too early, {twice} drawn twice, {undoubted} of them not in doubt; ink off by "
-            f"{max(one.off_mm for one in outcomes):.3f} mm at the most, of {bound_mm:.3f} mm that rounding may come to")
+    lost, claimed, undoubted = (
+        sum(len(getattr(one, name)) for one in outcomes) for name in ("lost", "claimed", "undoubted")
+    )
+    return (
+        f"{driver}: {len(outcomes)} drawings, {dead} deaths and {reset} resets; {lost} strokes lost, {claimed} "
+        f"claimed too early, {twice} drawn twice, {undoubted} of them not in doubt; ink off by "
+        f"{max(one.off_mm for one in outcomes):.3f} mm at the most, of {bound_mm:.3f} mm that rounding may come to"
+    )
 
 
 if __name__ == "__main__":

@@ -20,16 +20,44 @@ from guarded import command, judged, outcomes, told
 from mutations import mutated
 
 _ARMS = ("drawing_arm", "scara", "three_joint", "so101")
-_DRAWING = ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 40"><path d="M2 2l9 5-9 5"/><path d="M20 20h0"/>'
-            '<path d="M30 30q5 5 0 9"/></svg>')
-_PIECES = tuple(re.compile(pattern, re.MULTILINE) for pattern in (
-    rb"^.*\n", rb"^(?:.*\n){1,20}", rb"^#.*\n", rb",[^,\n]*", rb"[\w.-]+", rb"^(?:.*\n){50,200}"))
-_WORDS = tuple(word.encode() for word in (
-    ",", "\n", "\r\n", "#", "# rate_hz: 1e5\n", "# rate_hz: 0\n", "# arm: ../../etc/passwd\n", "# arm: six_joint\n",
-    "# trajectory: 2\n",
-    "# duration_s: 1e99\n", "# svg_to_arm_mm: 0 0 0 0 0 0\n", "# svg_to_arm_mm: 1e300 1 1 1e300 0 0\n", "nan", "inf",
-    "\0", "\ufeff",
-    "q1_deg", "pen", "stroke", "-1", "1e9", "999999999999", '"', ";", " "))
+_DRAWING = (
+    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 40"><path d="M2 2l9 5-9 5"/><path d="M20 20h0"/>'
+    '<path d="M30 30q5 5 0 9"/></svg>'
+)
+_PIECES = tuple(
+    re.compile(pattern, re.MULTILINE)
+    for pattern in (rb"^.*\n", rb"^(?:.*\n){1,20}", rb"^#.*\n", rb",[^,\n]*", rb"[\w.-]+", rb"^(?:.*\n){50,200}")
+)
+_WORDS = tuple(
+    word.encode()
+    for word in (
+        ",",
+        "\n",
+        "\r\n",
+        "#",
+        "# rate_hz: 1e5\n",
+        "# rate_hz: 0\n",
+        "# arm: ../../etc/passwd\n",
+        "# arm: six_joint\n",
+        "# trajectory: 2\n",
+        "# duration_s: 1e99\n",
+        "# svg_to_arm_mm: 0 0 0 0 0 0\n",
+        "# svg_to_arm_mm: 1e300 1 1 1e300 0 0\n",
+        "nan",
+        "inf",
+        "\0",
+        "\ufeff",
+        "q1_deg",
+        "pen",
+        "stroke",
+        "-1",
+        "1e9",
+        "999999999999",
+        '"',
+        ";",
+        " ",
+    )
+)
 _KINDS = ("profiles", "drawing", "speed", "error", "phase", "timeline", "film")
 
 
@@ -63,14 +91,14 @@ def attempt(folder: Path, seed: int, item: int, desk: Path) -> tuple[str, str]:
         extra = {"error": ("--drawing", drawing), "film": ("--fps", "1")}.get(kind, ())
         target = "film.gif" if kind == "film" else "picture.png"
         commands.append((("plot", "traj.csv", "-o", target, "--kind", kind, *extra), {0: "", 2: "", 3: ""}))
-    verdict = ""
+    check_result = ""
     for arguments, allowed in commands:
         code, said = command(*arguments)
         kind = judged(" ".join(arguments), code, said, allowed)
         if not kind.startswith("fine"):
             return kind, said
-        verdict = verdict or kind
-    return verdict, ""
+        check_result = check_result or kind
+    return check_result, ""
 
 
 def write(folder: Path, seed: int, item: int, keep: Path) -> None:

@@ -19,15 +19,15 @@ from benchmarks.targets.row import Row, missing
 from benchmarks.targets.strokes import UNROUNDED_HZ, problem_of
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
-from planner.arms.canvas import canvas_of
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import interpolate
-from planner.inverse_kinematics.stroke_postures import exact_postures, postures_at
+from planner.inverse_kinematics.stroke_configurations import configurations_at, exact_configurations
+from planner.motion.stroke_motion import motions
 from planner.settings import PlanSettings
 from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
-from planner.timing.stroke_motion import motions
 from planner.timing.timing_problem import FRACTIONS
+from planner.workspace.canvas import canvas_of
 
 Value = TypeVar("Value")
 
@@ -49,12 +49,21 @@ def against_copp(settings: PlanSettings) -> list[Row]:
     ours_s, ours_run_s = _planner(curve, limits)
     (once_s, once_run_s), (twice_s, twice_run_s) = _copp(curve, limits, 1), _copp(curve, limits, 2)
     return [
-        Row(what + ": trajectory", targets[0],
+        Row(
+            what + ": trajectory",
+            targets[0],
             f"{ours_s:.4f} s; COPP {once_s:.4f} s in one pass, {twice_s:.4f} s in two:"
-            f" {ours_s / min(once_s, twice_s):.4f} of the better", ours_s <= min(once_s, twice_s)),
-        Row(what + ": computing", targets[1],
+            f" {ours_s / min(once_s, twice_s):.4f} of the better",
+            ours_s <= min(once_s, twice_s),
+        ),
+        Row(
+            what + ": computing",
+            targets[1],
             f"{1e3 * ours_run_s:.0f} ms; COPP {1e3 * once_run_s:.0f} ms in one pass, {1e3 * twice_run_s:.0f} ms in two:"
-            f" 1/{once_run_s / ours_run_s:.1f} of one", ours_run_s <= once_run_s / 3)]
+            f" 1/{once_run_s / ours_run_s:.1f} of one",
+            ours_run_s <= once_run_s / 3,
+        ),
+    ]
 
 
 def _lissajous(arm: Arm, settings: PlanSettings) -> BSpline[np.float64]:
@@ -68,8 +77,8 @@ def _lissajous(arm: Arm, settings: PlanSettings) -> BSpline[np.float64]:
     share = np.linspace(0.0, 1.0, _CELLS + 1)
     at = make_interp_spline(way / way[-1], phase, k=5)(share)
     tips = np.column_stack((middle + half * np.column_stack((np.sin(2 * at), np.sin(at))), np.zeros(len(at))))
-    free, _ = exact_postures(arm, postures_at(arm, settings.method, tips), tips)
-    return make_interp_spline(share, arm.complete(free), k=7)
+    independent, _ = exact_configurations(arm, configurations_at(arm, settings.method, tips), tips)
+    return make_interp_spline(share, arm.complete(independent), k=7)
 
 
 def _planner(curve: BSpline[np.float64], limits: Limits) -> tuple[float, float]:
@@ -78,7 +87,7 @@ def _planner(curve: BSpline[np.float64], limits: Limits) -> tuple[float, float]:
 
     def ramp(distance: FloatArray) -> FloatArray:  # integral of x^2 (6 - 8 x + 3 x^2), then of 1
         x = np.minimum(distance / _RAMP, 1.0)
-        return _RAMP * (2 * x ** 3 - 2 * x ** 4 + 0.6 * x ** 5) + np.maximum(distance - _RAMP, 0.0)
+        return _RAMP * (2 * x**3 - 2 * x**4 + 0.6 * x**5) + np.maximum(distance - _RAMP, 0.0)
 
     way = ramp(sigma) + ramp(np.array([float(_CELLS)])) - ramp(_CELLS - sigma) - sigma
     cells, cap = np.array([_CELLS]), np.full((_CELLS, len(FRACTIONS)), np.inf)
@@ -87,11 +96,13 @@ def _planner(curve: BSpline[np.float64], limits: Limits) -> tuple[float, float]:
         paths = interpolate(cells, curve(np.clip(way / way[-1], 0.0, 1.0)))
         motion = motions(paths, minimum_time(problem_of(paths, limits, cap)).rates, limits, UNROUNDED_HZ)
         return float(motion.n_periods[0]) / UNROUNDED_HZ
+
     return _best(plan)
 
 
 def _copp(curve: BSpline[np.float64], limits: Limits, passes: int) -> tuple[float, float]:
     import copp_py as copp
+
     n_joints = len(limits.velocity)
     share = np.linspace(0.0, 1.0, _CELLS + 1)
     stations, count = _COPP_UNITS * share, len(share)
@@ -99,10 +110,13 @@ def _copp(curve: BSpline[np.float64], limits: Limits, passes: int) -> tuple[floa
     def plan() -> float:
         robot = copp.Robot(n_joints, capacity=count)
         robot.append_s(stations)
-        first, second, third = (curve(share, order) / _COPP_UNITS ** order for order in (1, 2, 3))
+        first, second, third = (curve(share, order) / _COPP_UNITS**order for order in (1, 2, 3))
         robot.set_q(curve(share), first, second, 0, dddq=third)
-        for add, most in ((robot.add_velocity_limits, limits.velocity),
-                          (robot.add_acceleration_limits, limits.acceleration), (robot.add_jerk_limits, limits.jerk)):
+        for add, most in (
+            (robot.add_velocity_limits, limits.velocity),
+            (robot.add_acceleration_limits, limits.acceleration),
+            (robot.add_jerk_limits, limits.jerk),
+        ):
             add(most, -most, start_idx_s=0, length=count)
         without_jerk = copp.solver.topp2_ra.Problem(robot.constraints, (0, count - 1), (0.0, 0.0))
         problem = copp.solver.topp3_socp.Problem(robot.constraints, copp.solver.topp2_ra.solve(without_jerk))
@@ -111,6 +125,7 @@ def _copp(curve: BSpline[np.float64], limits: Limits, passes: int) -> tuple[floa
             problem = copp.solver.topp3_socp.Problem(robot.constraints, profile.a, b_linearization=profile.b)
             profile = copp.solver.topp3_socp.solve(problem)
         return float(copp.interpolation.s_to_t_topp3(stations, profile)[0])
+
     return _best(plan)
 
 

@@ -32,8 +32,21 @@ def planned(drawing: Path, settings: PlanSettings) -> Cost:
     with tempfile.TemporaryDirectory() as folder:
         began, used_s = time.perf_counter(), _children_s()
         process = subprocess.Popen(
-            [sys.executable, "-m", "planner.cli", str(drawing), "-o", str(Path(folder) / "traj.csv"), "--quiet",
-             "--arm", settings.arm], cwd=root, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            [
+                sys.executable,
+                "-m",
+                "planner.cli",
+                str(drawing),
+                "-o",
+                str(Path(folder) / "traj.csv"),
+                "--quiet",
+                "--arm",
+                settings.arm,
+            ],
+            cwd=root,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+        )
         peak = _Peak(process.pid)
         _, errors = process.communicate()
         cost = Cost(time.perf_counter() - began, _children_s() - used_s, peak.stop())

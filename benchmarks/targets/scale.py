@@ -58,9 +58,17 @@ def _rows(what: str, runs: Sequence[tuple[int, int, Cost]]) -> list[Row]:
     most_mb = max(cost.peak_mb for *_, cost in runs)
     measured = "; ".join(
         f"{points} points, {n_strokes} strokes: {cost.wall_s:.1f} s, {us:.0f} µs of processors a point,"
-        f" {cost.peak_mb:.0f} MB" for (points, n_strokes, cost), us in zip(runs, each_us, strict=True))
-    return [Row(f"{what}, up to a million points", f"linear: a point ≤ {_LINEAR} x that of a quarter; ≤ {_MOST_MB} MB",
-                f"{measured}: {grows:.2f} x", grows <= _LINEAR and most_mb <= _MOST_MB)]
+        f" {cost.peak_mb:.0f} MB"
+        for (points, n_strokes, cost), us in zip(runs, each_us, strict=True)
+    )
+    return [
+        Row(
+            f"{what}, up to a million points",
+            f"linear: a point ≤ {_LINEAR} x that of a quarter; ≤ {_MOST_MB} MB",
+            f"{measured}: {grows:.2f} x",
+            grows <= _LINEAR and most_mb <= _MOST_MB,
+        )
+    ]
 
 
 def _overlaid(strokes: Sequence[FloatArray], count: int) -> str:
@@ -86,5 +94,7 @@ def _polyline(points: FloatArray) -> str:
 
 def _svg(body: str, size: FloatArray) -> str:
     width, height = size.tolist()
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm"'
-            f' viewBox="0 0 {width} {height}" fill="none" stroke="black" stroke-linecap="round">{body}</svg>')
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm"'
+        f' viewBox="0 0 {width} {height}" fill="none" stroke="black" stroke-linecap="round">{body}</svg>'
+    )

@@ -36,8 +36,10 @@ _FINER = 8
 def against_toppra(folder: Path, settings: PlanSettings) -> list[Row]:
     """Within the pen's speed, and without a cap on it: where a stroke is mostly drawn at the cap, planners differ in
     starting and stopping alone."""
-    what = (f"pen-down time of smooth strokes over 20 mm (no vertex turns more than {_SMOOTH_DEG:g}°,"
-            f" at most {_OF_EACH} a drawing) against TOPP-RA without jerk limits")
+    what = (
+        f"pen-down time of smooth strokes over 20 mm (no vertex turns more than {_SMOOTH_DEG:g}°,"
+        f" at most {_OF_EACH} a drawing) against TOPP-RA without jerk limits"
+    )
     target = "≤ 1.05"
     if absent := missing("toppra", what, target):
         return [absent]
@@ -50,8 +52,14 @@ def against_toppra(folder: Path, settings: PlanSettings) -> list[Row]:
         for per_s in _JERKS_PER_S:
             timings = [group.within(replace(group.limits, jerk=per_s * group.limits.acceleration)) for group in groups]
             bounds = [bound_s(timing.single(path)) for timing in timings for path in range(len(timing.time_s))]
-            rows.append(_beside_bound(f"{what}: {speed}, jerk limit {per_s:g} /s times the acceleration limit", target,
-                                      np.concatenate([timing.time_s for timing in timings]), np.array(bounds)))
+            rows.append(
+                _beside_bound(
+                    f"{what}: {speed}, jerk limit {per_s:g} /s times the acceleration limit",
+                    target,
+                    np.concatenate([timing.time_s for timing in timings]),
+                    np.array(bounds),
+                )
+            )
             if per_s == _JERKS_PER_S[0]:
                 rows.append(_optimum_beside_bound(speed, timings))
     return rows
@@ -61,8 +69,11 @@ def _smooth_strokes(folder: Path, settings: PlanSettings) -> list[TimedPaths]:
     arm = load_arm(settings.arm)
     groups = []
     for drawing in drawings(folder):
-        strokes = [stroke for stroke in lines(placed_strokes(drawing, arm, settings), 20.0)
-                   if sharpest_turn_deg(stroke) <= _SMOOTH_DEG]
+        strokes = [
+            stroke
+            for stroke in lines(placed_strokes(drawing, arm, settings), 20.0)
+            if sharpest_turn_deg(stroke) <= _SMOOTH_DEG
+        ]
         if strokes:
             groups.append(timed(arm, _spread(strokes, _OF_EACH), settings))
     return groups
@@ -72,9 +83,13 @@ def _beside_bound(what: str, target: str, times_s: FloatArray, bounds_s: FloatAr
     known = np.isfinite(bounds_s)
     times_s, bounds_s = times_s[known], bounds_s[known]
     total, ratios = float(times_s.sum() / bounds_s.sum()), times_s / bounds_s
-    return Row(what, target, f"{total:.3f} of {len(ratios)} strokes together; by stroke median"
-               f" {np.median(ratios):.3f}, worst {ratios.max():.3f}, within the target {(ratios <= 1.05).mean():.0%}",
-               total <= 1.05)
+    return Row(
+        what,
+        target,
+        f"{total:.3f} of {len(ratios)} strokes together; by stroke median"
+        f" {np.median(ratios):.3f}, worst {ratios.max():.3f}, within the target {(ratios <= 1.05).mean():.0%}",
+        total <= 1.05,
+    )
 
 
 def _optimum_beside_bound(speed: str, timings: list[TimedPaths]) -> Row:
@@ -92,8 +107,12 @@ def _optimum_beside_bound(speed: str, timings: list[TimedPaths]) -> Row:
     if not ours:
         return Row(what, "", "no stroke small enough")
     shares = np.sum((ours, optimum), axis=1) / np.sum(bound)
-    return Row(what, "", f"of {len(ours)} strokes together the independent third-order optimum takes {shares[1]:.3f} of"
-               f" TOPP-RA's bound, the planner {shares[0]:.3f}")
+    return Row(
+        what,
+        "",
+        f"of {len(ours)} strokes together the independent third-order optimum takes {shares[1]:.3f} of"
+        f" TOPP-RA's bound, the planner {shares[0]:.3f}",
+    )
 
 
 def against_optimum(folder: Path, settings: PlanSettings) -> list[Row]:
@@ -114,16 +133,24 @@ def against_optimum(folder: Path, settings: PlanSettings) -> list[Row]:
                 least = least_time_slp_s(single.derivative, single.n_cells, single.limits, single.cap_at, _FINER)
                 small.append(single.time_s / least)
     return [
-        _share(f"any stroke against the third-order optimum: nonlinear programme on {_FINER} times finer cells, Ipopt"
-               + (f" (which gave up on {gave_up})" if gave_up else ""), fine),
-        _share(f"the same by sequential linear programmes on {_FINER} times finer cells, HiGHS (small strokes)", small)]
+        _share(
+            f"any stroke against the third-order optimum: nonlinear program on {_FINER} times finer cells, Ipopt"
+            + (f" (which gave up on {gave_up})" if gave_up else ""),
+            fine,
+        ),
+        _share(f"the same by sequential linear programs on {_FINER} times finer cells, HiGHS (small strokes)", small),
+    ]
 
 
 def _share(what: str, ratios: list[float]) -> Row:
     if not ratios:
         return Row(what, "≤ 1.01", "no stroke small enough")
-    return Row(what, "≤ 1.01", f"of {len(ratios)} strokes median {np.median(ratios):.4f}, worst {max(ratios):.4f}",
-               max(ratios) <= 1.01)
+    return Row(
+        what,
+        "≤ 1.01",
+        f"of {len(ratios)} strokes median {np.median(ratios):.4f}, worst {max(ratios):.4f}",
+        max(ratios) <= 1.01,
+    )
 
 
 def _spread(strokes: list[FloatArray], most: int) -> list[FloatArray]:

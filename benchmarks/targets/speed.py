@@ -1,4 +1,4 @@
-"""How long things take: postures by the closed form and by the nonlinear programme, and one drawing end to end."""
+"""How long things take: configurations by the closed form and by the nonlinear program, and one drawing end to end."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from benchmarks.targets.family import planned
 from benchmarks.targets.row import Row
 from benchmarks.targets.strokes import lines, placed_strokes
 from planner.arms.arm_file import load_arm
-from planner.arms.closed_forms import family_of
-from planner.arms.posture_field import posture_field
 from planner.inverse_kinematics import nlp
+from planner.inverse_kinematics.closed_forms import family_of
+from planner.redundancy.configuration_map import configuration_map_of
 from planner.settings import PlanSettings
 
 _CLOSED_TARGETS = 500_000
@@ -22,13 +22,13 @@ _NLP_TARGETS = 2000
 """At most, of one stroke: the next is warm only where the last is near."""
 
 
-def postures(drawing: Path, settings: PlanSettings) -> list[Row]:
+def configurations(drawing: Path, settings: PlanSettings) -> list[Row]:
     """Targets are the points of the drawing's strokes, repeated as often as needed."""
     arm = load_arm(settings.arm)
     points = np.concatenate(lines(placed_strokes(drawing, arm, settings)))
     tips = np.column_stack((points, np.zeros(len(points))))
     many = np.resize(tips, (_CLOSED_TARGETS, 3))
-    pitch = arm.complete(posture_field(arm).reference(many))[:, 1:4].sum(axis=1)
+    pitch = arm.complete(configuration_map_of(arm).reference(many))[:, 1:4].sum(axis=1)
     at_tip = family_of(arm).at_tip
     at_tip(arm, many, pitch)
     began = time.perf_counter()
@@ -36,20 +36,27 @@ def postures(drawing: Path, settings: PlanSettings) -> list[Row]:
     closed_us = (time.perf_counter() - began) / len(many) * 1e6
     longest = max(lines(placed_strokes(drawing, arm, settings)), key=len)[:_NLP_TARGETS]
     few = np.column_stack((longest, np.zeros(len(longest))))
-    home = posture_field(arm).home
+    home = configuration_map_of(arm).home
     runs_s = []
     for _ in range(_NLP_RUNS):
         began = time.perf_counter()
         nlp.solve_sequence(arm, few, home)
         runs_s.append(time.perf_counter() - began)
     warm_us = min(runs_s) / len(few) * 1e6
-    return [Row("closed form, all branches, a point", "≤ 1 µs", f"{closed_us:.2f} µs", closed_us <= 1.0),
-            Row("NLP, a warm point", "≤ 110 µs", f"{warm_us:.0f} µs", warm_us <= 110.0)]
+    return [
+        Row("closed form, all branches, a point", "≤ 1 µs", f"{closed_us:.2f} µs", closed_us <= 1.0),
+        Row("NLP, a warm point", "≤ 110 µs", f"{warm_us:.0f} µs", warm_us <= 110.0),
+    ]
 
 
 def end_to_end(drawing: Path, settings: PlanSettings) -> list[Row]:
     """The command itself."""
     cost = planned(drawing, settings)
-    return [Row(f"{drawing.name} end to end", "≤ 5 s, ≤ 300 MB",
-                f"{cost.wall_s:.1f} s ({cost.processors_s:.1f} s of processors), {cost.peak_mb:.0f} MB",
-                cost.wall_s <= 5 and cost.peak_mb <= 300)]
+    return [
+        Row(
+            f"{drawing.name} end to end",
+            "≤ 5 s, ≤ 300 MB",
+            f"{cost.wall_s:.1f} s ({cost.processors_s:.1f} s of processors), {cost.peak_mb:.0f} MB",
+            cost.wall_s <= 5 and cost.peak_mb <= 300,
+        )
+    ]

@@ -12,21 +12,22 @@ from pathlib import Path
 
 import numpy as np
 
-from planner import pipeline, portions
+from planner import pipeline
 from planner.arms.arm import Arm
-from planner.arms.canvas import canvas_of
 from planner.arrays import FloatArray, IntArray
 from planner.drawing.order import order_strokes
 from planner.drawing.svg import read_drawing
+from planner.execution import work_chunks
 from planner.inverse_kinematics.joint_path import DEGREE, JointPaths
-from planner.inverse_kinematics.stroke_postures import Obstacle, joint_paths
+from planner.inverse_kinematics.stroke_configurations import InfeasiblePath, joint_paths
+from planner.motion.stroke_motion import StrokeMotions, motions
 from planner.placement.pen_path import PenPaths, smooth_paths
 from planner.ragged import starts_of
 from planner.settings import PlanSettings
 from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
-from planner.timing.stroke_motion import StrokeMotions, motions
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
+from planner.workspace.canvas import canvas_of
 
 UNROUNDED_HZ = 1e6
 """A sample rate at which rounding up to whole periods is nothing."""
@@ -51,9 +52,10 @@ class TimedPaths:
 
     def single(self, path: int) -> SinglePath:
         cells, controls = starts_of(self.joints.n_cells), starts_of(self.joints.n_cells + DEGREE)
-        joints = JointPaths(self.joints.n_cells[path:path + 1], self.joints.controls[controls[path]:controls[path + 1]])
-        return SinglePath(joints, self.cap[cells[path]:cells[path + 1]], self.limits, float(self.time_s[path]))
-
+        joints = JointPaths(
+            self.joints.n_cells[path : path + 1], self.joints.controls[controls[path] : controls[path + 1]]
+        )
+        return SinglePath(joints, self.cap[cells[path] : cells[path + 1]], self.limits, float(self.time_s[path]))
 
     def within(self, limits: Limits) -> TimedPaths:
         """The same paths timed within other limits."""
@@ -81,8 +83,9 @@ class SinglePath:
     def cap_at(self, sigma: FloatArray) -> FloatArray:
         """(n,) the cap between the FRACTIONS, joined by straight lines."""
         shared = np.minimum(self.cap[1:, 0], self.cap[:-1, -1])  # where cells meet
-        cap = np.concatenate((self.cap[:1, 0], np.column_stack((self.cap[:-1, 1:-1], shared)).ravel(),
-                              self.cap[-1, 1:]))
+        cap = np.concatenate(
+            (self.cap[:1, 0], np.column_stack((self.cap[:-1, 1:-1], shared)).ravel(), self.cap[-1, 1:])
+        )
         return np.interp(sigma, np.linspace(0.0, self.n_cells, len(cap)), np.minimum(cap, _NO_CAP))
 
 
@@ -113,20 +116,21 @@ def sharpest_turn_deg(stroke: FloatArray) -> float:
     return float(np.rad2deg(np.abs(np.diff(heading)).max(initial=0.0)))
 
 
-def followed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
-             ) -> tuple[PenPaths, JointPaths, list[Obstacle]]:
+def followed(
+    arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
+) -> tuple[PenPaths, JointPaths, list[InfeasiblePath]]:
     """Pen and joint paths of polylines, and those that cannot be followed, before timing."""
-    pen = smooth_paths(strokes, portions.SMOOTH_SHARE * settings.tolerance_mm)
+    pen = smooth_paths(strokes, work_chunks.SMOOTH_SHARE * settings.tolerance_mm)
     return pen, *joint_paths(arm, settings.method, pen, settings.weights)
 
 
 def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> TimedPaths:
     """The planner's timing of polylines, those that cannot be followed as well."""
     pen, joints, _ = followed(arm, strokes, settings)
-    for _ in range(portions._TIMING_HALVINGS):
-        pen, joints = pen.halved(), joints.halved()
+    for _ in range(work_chunks._TIMING_SUBDIVISIONS):
+        pen, joints = pen.subdivided(), joints.subdivided()
     limits = Limits.of(arm)
-    return _timed(pen, joints, portions.pen_cap(arm, pen, joints, settings), limits)
+    return _timed(pen, joints, work_chunks.pen_speed_limit(arm, pen, joints, settings), limits)
 
 
 def _timed(pen: PenPaths, joints: JointPaths, cap: FloatArray, limits: Limits) -> TimedPaths:
@@ -134,11 +138,11 @@ def _timed(pen: PenPaths, joints: JointPaths, cap: FloatArray, limits: Limits) -
     return TimedPaths(pen, joints, cap, limits, motion, motion.n_periods / UNROUNDED_HZ)
 
 
-def timed_in_portions(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedPaths]:
-    """The same in the portions and pieces that the planner makes of them."""
-    kit = portions.Kit.of(arm, settings)
-    cut = portions.stroke_portions(kit, list(chain.from_iterable(portions.pieces_of(kit, strokes))))
-    return [timed(arm, portion.strokes, settings) for portion in cut]
+def timed_in_chunks(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedPaths]:
+    """The same in the work chunks and pieces that the planner makes of them."""
+    context = work_chunks.PlanContext.of(arm, settings)
+    cut = work_chunks.stroke_chunks(context, list(chain.from_iterable(work_chunks.pieces_of(context, strokes))))
+    return [timed(arm, chunk.strokes, settings) for chunk in cut]
 
 
 def problem_of(joints: JointPaths, limits: Limits, cap: FloatArray) -> TimingProblem:

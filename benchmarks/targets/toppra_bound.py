@@ -20,6 +20,7 @@ _FASTEST = 1e3
 def bound_s(path: SinglePath) -> float:
     """Least time within velocity and acceleration limits and the cap on the rate, from rest to rest; NaN if none."""
     import toppra
+
     logging.getLogger("toppra").setLevel(logging.ERROR)
     n_joints = len(path.limits.velocity)
     rate = path.n_cells / path.time_s  # sigma in units of the mean rate: the solver fails on badly scaled paths
@@ -30,7 +31,7 @@ def bound_s(path: SinglePath) -> float:
         def __call__(self, parameter: FloatArray, order: int = 0) -> FloatArray:
             at = np.atleast_1d(np.asarray(parameter, dtype=np.float64))
             own = at if order == 0 else np.full(len(at), 1.0 if order == 1 else 0.0)
-            values = np.column_stack((path.derivative(at * rate, order) * rate ** order, own))
+            values = np.column_stack((path.derivative(at * rate, order) * rate**order, own))
             return values[0] if np.ndim(parameter) == 0 else values
 
         @property
@@ -50,9 +51,14 @@ def bound_s(path: SinglePath) -> float:
 
     most = np.append(path.limits.acceleration, 1e8)
     instance = toppra.algorithm.TOPPRA(
-        [toppra.constraint.JointVelocityConstraintVarying(speeds),
-         toppra.constraint.JointAccelerationConstraint(np.column_stack((-most, most)))],
-        AndParameter(), gridpoints=grid, solver_wrapper="seidel")
+        [
+            toppra.constraint.JointVelocityConstraintVarying(speeds),
+            toppra.constraint.JointAccelerationConstraint(np.column_stack((-most, most))),
+        ],
+        AndParameter(),
+        gridpoints=grid,
+        solver_wrapper="seidel",
+    )
     _, speed, _ = instance.compute_parameterization(0.0, 0.0)
     if speed is None:
         return float("nan")

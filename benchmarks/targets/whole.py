@@ -10,18 +10,18 @@ from unittest.mock import patch
 import numpy as np
 
 from benchmarks.targets.row import Row
-from benchmarks.targets.strokes import TimedPaths, drawings, length_mm, lines, placed_strokes, timed_in_portions
+from benchmarks.targets.strokes import TimedPaths, drawings, length_mm, lines, placed_strokes, timed_in_chunks
 from planner import pipeline
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.drawing.order import order_strokes
 from planner.errors import PlannerError
-from planner.inverse_kinematics.stroke_postures import exact_postures, postures_at
+from planner.inverse_kinematics.stroke_configurations import configurations_at, exact_configurations
 from planner.settings import PlanSettings
 from planner.summary import PhaseTimes
 from planner.timing.limits import Limits
-from planner.timing.ruckig_profile import rest_to_rest
+from planner.travel.ruckig_profile import rest_to_rest
 
 _SAMPLES_PER_CELL = 20
 _CELLS_AT_ONCE = 20_000
@@ -35,21 +35,31 @@ def limits_and_stopping(folder: Path, settings: PlanSettings) -> list[Row]:
     by_drawing = []
     for drawing in drawings(folder):
         strokes = lines(placed_strokes(drawing, arm, settings))
-        portions = timed_in_portions(arm, strokes, settings)
-        flows_s = sum(float(paths.time_s.sum()) for paths in portions)
+        chunks = timed_in_chunks(arm, strokes, settings)
+        flows_s = sum(float(paths.time_s.sum()) for paths in chunks)
         halts_s = stopping_s(arm, strokes, settings)
-        worst = np.max([worst, *(shares_of_limits(paths) for paths in portions)], axis=0)
+        worst = np.max([worst, *(shares_of_limits(paths) for paths in chunks)], axis=0)
         flowing_s, halting_s = flowing_s + flows_s, halting_s + halts_s
         least_s += sum(map(length_mm, strokes)) / settings.speed_mm_s
         n_points += sum(map(len, strokes))
         by_drawing.append(f"{drawing.stem} {halts_s / flows_s:.1f}")
     return [
-        Row(f"limits at {_SAMPLES_PER_CELL} samples a cell, all drawings: velocity, acceleration, jerk",
-            "≤ 1.000 of each", ", ".join(f"{share:.4f}" for share in worst), bool((worst <= 1.0005).all())),
-        Row(f"pen-down time against stopping at each of {n_points} points (Ruckig from rest to rest, same limits)",
-            "at least 10 x shorter", f"{flowing_s:.0f} s, stopping {halting_s:.0f} s: {halting_s / flowing_s:.1f} x ("
-            + ", ".join(by_drawing) + f"); at {settings.speed_mm_s:g} mm/s all along, round every corner, it would be"
-            f" {halting_s / least_s:.1f} x", halting_s >= 10 * flowing_s)]
+        Row(
+            f"limits at {_SAMPLES_PER_CELL} samples a cell, all drawings: velocity, acceleration, jerk",
+            "≤ 1.000 of each",
+            ", ".join(f"{share:.4f}" for share in worst),
+            bool((worst <= 1.0005).all()),
+        ),
+        Row(
+            f"pen-down time against stopping at each of {n_points} points (Ruckig from rest to rest, same limits)",
+            "at least 10 x shorter",
+            f"{flowing_s:.0f} s, stopping {halting_s:.0f} s: {halting_s / flowing_s:.1f} x ("
+            + ", ".join(by_drawing)
+            + f"); at {settings.speed_mm_s:g} mm/s all along, round every corner, it would be"
+            f" {halting_s / least_s:.1f} x",
+            halting_s >= 10 * flowing_s,
+        ),
+    ]
 
 
 def shares_of_limits(paths: TimedPaths) -> FloatArray:
@@ -62,9 +72,13 @@ def shares_of_limits(paths: TimedPaths) -> FloatArray:
         for f in np.linspace(0.0, 1.0, _SAMPLES_PER_CELL + 1).tolist():
             q1, q2, q3 = (joints.at(cells, np.full(len(cells), f), order) for order in (1, 2, 3))
             b, slope, bend = c0 + f * (c1 + f * (c2 + f * c3)), c1 + f * (2 * c2 + 3 * f * c3), 2 * c2 + 6 * f * c3
-            for k, (rate, limit) in enumerate((
-                    (q1 * np.sqrt(b), limits.velocity), (q2 * b + 0.5 * q1 * slope, limits.acceleration),
-                    ((q3 * b + 1.5 * q2 * slope + 0.5 * q1 * bend) * np.sqrt(b), limits.jerk))):
+            for k, (rate, limit) in enumerate(
+                (
+                    (q1 * np.sqrt(b), limits.velocity),
+                    (q2 * b + 0.5 * q1 * slope, limits.acceleration),
+                    ((q3 * b + 1.5 * q2 * slope + 0.5 * q1 * bend) * np.sqrt(b), limits.jerk),
+                )
+            ):
                 worst[k] = max(worst[k], float((np.abs(rate) / limit).max()))
     return worst
 
@@ -74,15 +88,17 @@ def stopping_s(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) 
     limits = Limits.of(arm)
     points = np.concatenate(strokes)
     tips = np.column_stack((points, np.zeros(len(points))))
-    free, _ = exact_postures(arm, postures_at(arm, settings.method, tips), tips)
-    steps = np.maximum(np.abs(np.diff(arm.complete(free), axis=0)), 1e-12)
+    independent, _ = exact_configurations(arm, configurations_at(arm, settings.method, tips), tips)
+    steps = np.maximum(np.abs(np.diff(arm.complete(independent), axis=0)), 1e-12)
     way_mm = np.maximum(np.hypot(*np.diff(points, axis=0).T), 1e-12)
     inside = np.ones(len(steps), dtype=bool)
     inside[np.cumsum([len(stroke) for stroke in strokes])[:-1] - 1] = False
     velocity = np.minimum((limits.velocity / steps).min(axis=1), settings.speed_mm_s / way_mm)[inside]
     acceleration, jerk = ((limit / steps).min(axis=1)[inside] for limit in (limits.acceleration, limits.jerk))
-    return sum(rest_to_rest(1.0, v, a, j).duration_s
-               for v, a, j in zip(velocity.tolist(), acceleration.tolist(), jerk.tolist(), strict=True))
+    return sum(
+        rest_to_rest(1.0, v, a, j).duration_s
+        for v, a, j in zip(velocity.tolist(), acceleration.tolist(), jerk.tolist(), strict=True)
+    )
 
 
 def phases_and_order(folder: Path, settings: PlanSettings) -> list[Row]:
@@ -102,13 +118,23 @@ def phases_and_order(folder: Path, settings: PlanSettings) -> list[Row]:
             rows.append(Row(f"whole drawing, {drawing.stem}", "report", str(error)))
             continue
         total, straight_total = total + _pen_up_s(phases), straight_total + _pen_up_s(straight)
-        rows.append(Row(
-            f"whole drawing, {drawing.stem}", "report", f"{phases.total_s:.1f} s: drawing {phases.drawing_s:.1f},"
-            f" lowering {phases.lowering_s:.1f}, lifting {phases.lifting_s:.1f}, travelling {phases.travelling_s:.1f},"
-            f" resting {phases.resting_s:.1f}; pen up {_pen_up_s(straight):.1f} s in Euclidean order"))
-    rows.append(Row("pen-up time of all drawings against strokes in Euclidean order", "never longer",
-                    f"{total:.1f} s against {straight_total:.1f} s: {total / max(straight_total, 1e-9):.4f}",
-                    total <= straight_total * (1 + 1e-9)))
+        rows.append(
+            Row(
+                f"whole drawing, {drawing.stem}",
+                "report",
+                f"{phases.total_s:.1f} s: drawing {phases.drawing_s:.1f},"
+                f" lowering {phases.lowering_s:.1f}, lifting {phases.lifting_s:.1f}, travelling {phases.travelling_s:.1f},"
+                f" resting {phases.resting_s:.1f}; pen up {_pen_up_s(straight):.1f} s in Euclidean order",
+            )
+        )
+    rows.append(
+        Row(
+            "pen-up time of all drawings against strokes in Euclidean order",
+            "never longer",
+            f"{total:.1f} s against {straight_total:.1f} s: {total / max(straight_total, 1e-9):.4f}",
+            total <= straight_total * (1 + 1e-9),
+        )
+    )
     return rows
 
 
@@ -126,8 +152,13 @@ def tolerances(drawing: Path, settings: PlanSettings) -> list[Row]:
     times = []
     for tolerance_mm in _TOLERANCES_MM:
         coarser = replace(settings, tolerance_mm=tolerance_mm)
-        portions = timed_in_portions(arm, lines(placed_strokes(drawing, arm, coarser)), coarser)
-        times.append(sum(float(paths.time_s.sum()) for paths in portions))
+        chunks = timed_in_chunks(arm, lines(placed_strokes(drawing, arm, coarser)), coarser)
+        times.append(sum(float(paths.time_s.sum()) for paths in chunks))
     asked = ", ".join(f"{tolerance_mm:g}" for tolerance_mm in _TOLERANCES_MM)
-    return [Row(f"pen-down time of {drawing.stem} at tolerance {asked} mm", "report",
-                ", ".join(f"{time_s:.1f} s" for time_s in times))]
+    return [
+        Row(
+            f"pen-down time of {drawing.stem} at tolerance {asked} mm",
+            "report",
+            ", ".join(f"{time_s:.1f} s" for time_s in times),
+        )
+    ]

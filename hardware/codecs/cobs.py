@@ -18,9 +18,9 @@ def stuff(message: bytes) -> bytes:
         if whole and rest == 0 and index == len(runs) - 1:
             whole, rest = whole - 1, _LONGEST_RUN  # a full run at the very end needs no empty one after it
         for start in range(0, whole * _LONGEST_RUN, _LONGEST_RUN):
-            stuffed += b"\xff" + run[start:start + _LONGEST_RUN]
+            stuffed += b"\xff" + run[start : start + _LONGEST_RUN]
         stuffed.append(rest + 1)
-        stuffed += run[whole * _LONGEST_RUN:]
+        stuffed += run[whole * _LONGEST_RUN :]
     return bytes(stuffed)
 
 
@@ -30,7 +30,7 @@ def unstuff(stuffed: bytes) -> bytes:
     at = 0
     while at < len(stuffed):
         code = stuffed[at]
-        run = stuffed[at + 1:at + code]
+        run = stuffed[at + 1 : at + code]
         if code == 0 or len(run) != code - 1 or 0 in run:
             raise NotStuffed(f"byte {at} points {code} on, which is a zero or beyond the end")
         message += run

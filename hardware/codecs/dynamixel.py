@@ -19,9 +19,15 @@ _LONGEST = 64
 """An answer that says that it is longer is noise."""
 _CRC16 = 0x8005
 """x^16 + x^15 + x^2 + 1, bits highest first, from 0."""
-_FAULTS = {1: "could not carry out what it was told", 2: "an instruction that it does not know", 3: "a wrong CRC",
-           4: "a value out of its range", 5: "data of the wrong length", 6: "a value beyond its limits",
-           7: "a register that is closed to it now"}
+_FAULTS = {
+    1: "could not carry out what it was told",
+    2: "an instruction that it does not know",
+    3: "a wrong CRC",
+    4: "a value out of its range",
+    5: "data of the wrong length",
+    6: "a value beyond its limits",
+    7: "a register that is closed to it now",
+}
 _ALERT = 0x80
 
 
@@ -38,8 +44,7 @@ def sync_write(register: int, data: Mapping[int, bytes]) -> bytes:
     """Writes the bytes of each servo, all as many, from `register` on. Nobody answers."""
     size = len(next(iter(data.values())))
     parameters = b"".join(bytes((servo, *content)) for servo, content in data.items())
-    return _packet(_BROADCAST, _SYNC_WRITE,
-                   register.to_bytes(2, "little") + size.to_bytes(2, "little") + parameters)
+    return _packet(_BROADCAST, _SYNC_WRITE, register.to_bytes(2, "little") + size.to_bytes(2, "little") + parameters)
 
 
 def word(count: int) -> bytes:

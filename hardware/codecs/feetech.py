@@ -59,7 +59,7 @@ def take_status(received: bytearray) -> Status | None:
         plausible = received[2] < _BROADCAST and STATUS_SIZE <= size <= _LONGEST
         if plausible and len(received) < size:
             return None
-        if plausible and received[size - 1] == _checksum(received[2:size - 1]):
+        if plausible and received[size - 1] == _checksum(received[2 : size - 1]):
             packet = bytes(received[:size])
             del received[:size]
             return Status(packet[2], _in_words(packet[4]), packet[5:-1])

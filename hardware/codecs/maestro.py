@@ -14,9 +14,17 @@ REPLY_SIZE = 2
 _SET_TARGET, _SET_SPEED, _SET_ACCELERATION, _GET_POSITION = 0x84, 0x87, 0x89, 0x90
 _CRC7 = 0x91
 """x^7 + x^3 + 1, for bits that come lowest first."""
-_ERRORS = ("a framing error of the serial line", "a serial overrun", "a full serial buffer", "a wrong CRC",
-           "a command that it does not know", "a serial time-out", "a stack error of its script",
-           "a call stack error of its script", "an error of its script's counter")
+_ERRORS = (
+    "a framing error of the serial line",
+    "a serial overrun",
+    "a full serial buffer",
+    "a wrong CRC",
+    "a command that it does not know",
+    "a serial time-out",
+    "a stack error of its script",
+    "a call stack error of its script",
+    "an error of its script's counter",
+)
 
 
 def set_target(channel: int, pulse_us: float) -> bytes:

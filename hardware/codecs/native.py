@@ -207,12 +207,21 @@ def _decode(stuffed: bytes) -> Message | None:
     try:
         if kind == _INFO:
             session, protocol, major, minor, channels, shortest, longest = _INFO_PAYLOAD.unpack_from(payload)
-            pulses = struct.unpack(f"<{(len(payload) - _INFO_PAYLOAD.size) // 2}H", payload[_INFO_PAYLOAD.size:])
+            pulses = struct.unpack(f"<{(len(payload) - _INFO_PAYLOAD.size) // 2}H", payload[_INFO_PAYLOAD.size :])
             return Info(sequence, session, protocol, (major, minor), channels, shortest, longest, pulses)
         if kind == _STATUS:
             session, state, fault, result, expected, free, flags, reached = _STATUS_PAYLOAD.unpack(payload)
-            return Status(sequence, session, State(state), Fault(fault), Result(result), expected, free,
-                          bool(flags & _GAP), reached)
+            return Status(
+                sequence,
+                session,
+                State(state),
+                Fault(fault),
+                Result(result),
+                expected,
+                free,
+                bool(flags & _GAP),
+                reached,
+            )
         if kind == _RECORD:
             session, reached, state = _RECORD_PAYLOAD.unpack(payload)
             return Record(sequence, session, reached, State(state))

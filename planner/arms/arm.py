@@ -23,7 +23,7 @@ class JointKind(StrEnum):
 
 
 class PenHold(StrEnum):
-    """What keeps the pen to the paper, and so which equations a posture has to meet beside the tip's place."""
+    """What keeps the pen to the paper, and so which equations a configuration has to meet beside the tip's place."""
 
     COUPLING = "coupling"
     """Linear couplings between joints keep it upright: nothing to solve for."""
@@ -73,7 +73,7 @@ class BusServo:
 class Joint:
     """One DH row and its limits: rad, rad/s, ... for a revolute joint, mm, mm/s, ... for a prismatic one.
 
-    thickness_mm: diameter of the row's link, a round bar along its d and its a; None where it is not known.
+    thickness_mm: diameter of the row's link, a capsule along its d and its a; None where it is not known.
     """
 
     name: str
@@ -124,9 +124,9 @@ class Pen:
 @dataclass(frozen=True, slots=True)
 class Workspace:
     """What the builder says of the paper: the inner radius that the pen stays out of, and how close to a
-    singular posture drawing may come.
+    singular configuration drawing may come.
 
-    min_tip_speed_mm_s: a posture counts as usable where the tip can move at least this fast in every
+    min_tip_speed_mm_s: a configuration counts as usable where the tip can move at least this fast in every
         direction with the joints within their speeds (smallest singular value of J diag(speeds)).
     """
 
@@ -185,17 +185,17 @@ class Arm:
         return self._column("per_file_unit")
 
     @cached_property
-    def free_joints(self) -> tuple[int, ...]:
+    def independent_joints(self) -> tuple[int, ...]:
         """Indices of the joints that no coupling drives."""
-        driven = {coupling.joint for coupling in self.couplings}
-        return tuple(index for index in range(self.n_joints) if index not in driven)
+        mimic = {coupling.joint for coupling in self.couplings}
+        return tuple(index for index in range(self.n_joints) if index not in mimic)
 
     @cached_property
     def coupling_matrix(self) -> tuple[FloatArray, FloatArray]:
-        """(C, c) with q = C q_free + c: shapes (n_joints, n_free) and (n_joints,)."""
-        matrix = np.zeros((self.n_joints, len(self.free_joints)))
+        """(C, c) with q = C q_independent + c: shapes (n_joints, n_independent) and (n_joints,)."""
+        matrix = np.zeros((self.n_joints, len(self.independent_joints)))
         constant = np.zeros(self.n_joints)
-        column = {joint: k for k, joint in enumerate(self.free_joints)}
+        column = {joint: k for k, joint in enumerate(self.independent_joints)}
         for joint, k in column.items():
             matrix[joint, k] = 1.0
         for coupling in self.couplings:
@@ -206,10 +206,10 @@ class Arm:
         constant.setflags(write=False)
         return matrix, constant
 
-    def complete(self, free: FloatArray) -> FloatArray:
-        """All joints (..., n_joints) from the free ones (..., n_free), couplings applied."""
+    def complete(self, independent: FloatArray) -> FloatArray:
+        """All joints (..., n_joints) from the free ones (..., n_independent), couplings applied."""
         matrix, constant = self.coupling_matrix
-        joints: FloatArray = free @ matrix.T + constant
+        joints: FloatArray = independent @ matrix.T + constant
         return joints
 
     def to_file_units(self, positions: FloatArray) -> FloatArray:

@@ -135,7 +135,7 @@ class _ArmSection(Section):
     workspace: _WorkspaceSection
     joints: Annotated[
         list[Annotated[_RevoluteSection | _PrismaticSection, Field(discriminator="kind")]],
-        Field(min_length=1, max_length=_MOST_JOINTS)
+        Field(min_length=1, max_length=_MOST_JOINTS),
     ]
     coupling: list[_CouplingSection] = Field(default=[])
     park: dict[str, Number] | None = None
@@ -161,8 +161,13 @@ def load_arm(name_or_file: str) -> Arm:
     if name_or_file.endswith(".toml"):
         return read_arm_file(Path(name_or_file))
     if name_or_file.lower().endswith(_ROBOT_DESCRIPTIONS):
-        raise ArmFileError(name_or_file, ["robot descriptions (URDF, xacro) are not read yet; write the joints as rows"
-                                          " of a Denavit-Hartenberg table into a .toml file"])
+        raise ArmFileError(
+            name_or_file,
+            [
+                "robot descriptions (URDF, xacro) are not read yet; write the joints as rows"
+                " of a Denavit-Hartenberg table into a .toml file"
+            ],
+        )
     if name_or_file not in known_arms():
         raise UnknownArm(name_or_file, known_arms())
     return read_arm_file(arms_folder() / f"{name_or_file}.toml")
@@ -225,12 +230,18 @@ def _contradictions(section: _ArmSection) -> list[str]:
     for index, joint in enumerate(section.joints):
         if names.index(joint.name) != index:
             faults.append(f"joints[{index}].name: '{joint.name}' is used twice")
-    together_mm = sum(abs(joint.d_mm) + abs(joint.a_mm) + (
-        max(map(abs, joint.limits)) if isinstance(joint, _PrismaticSection) else 0.0) for joint in section.joints)
+    together_mm = sum(
+        abs(joint.d_mm)
+        + abs(joint.a_mm)
+        + (max(map(abs, joint.limits)) if isinstance(joint, _PrismaticSection) else 0.0)
+        for joint in section.joints
+    )
     if together_mm > LONGEST_MM:
-        faults.append(f"joints: their lengths (d_mm, a_mm and what slides) are {together_mm:g} mm together, more than"
-                      f" {LONGEST_MM:g} mm")
-    driven = [coupling.joint for coupling in section.coupling]
+        faults.append(
+            f"joints: their lengths (d_mm, a_mm and what slides) are {together_mm:g} mm together, more than"
+            f" {LONGEST_MM:g} mm"
+        )
+    mimic = [coupling.joint for coupling in section.coupling]
     for index, coupling in enumerate(section.coupling):
         key = f"coupling[{index}]"
         for name in (coupling.joint, *coupling.coefficients):
@@ -238,34 +249,43 @@ def _contradictions(section: _ArmSection) -> list[str]:
                 faults.append(f"{key}: there is no joint '{name}' (joints: {', '.join(names)})")
             elif section.joints[names.index(name)].kind != "revolute":
                 faults.append(f"{key}: joint '{name}' is prismatic; couplings hold between revolute joints")
-        if driven.index(coupling.joint) != index:
+        if mimic.index(coupling.joint) != index:
             faults.append(f"{key}.joint: '{coupling.joint}' is driven by two couplings")
-        faults += [f"{key}.coefficients: '{name}' is itself driven by a coupling"
-                   for name in coupling.coefficients if name in driven]
+        faults += [
+            f"{key}.coefficients: '{name}' is itself driven by a coupling"
+            for name in coupling.coefficients
+            if name in mimic
+        ]
     if section.pen.hold == "coupling" and not section.coupling:
         faults.append("pen.hold: 'coupling' needs at least one [[coupling]]")
     faults += _shared_lines(section)
     if section.park is not None:
-        faults += _misparked(section.park, [name for name in names if name not in driven], names)
+        faults += _misparked(section.park, [name for name in names if name not in mimic], names)
     return faults
 
 
 def _shared_lines(section: _ArmSection) -> list[str]:
     """Joints that would be moved by each other's pulses or packets."""
-    channels = {index: index if joint.servo.channel is None else joint.servo.channel
-                for index, joint in enumerate(section.joints) if joint.servo is not None}
+    channels = {
+        index: index if joint.servo.channel is None else joint.servo.channel
+        for index, joint in enumerate(section.joints)
+        if joint.servo is not None
+    }
     ids = {index: joint.bus.id for index, joint in enumerate(section.joints) if joint.bus is not None}
-    return [f"joints[{index}].{key}: {value} is another joint's too"
-            for key, values in (("servo.channel", channels), ("bus.id", ids))
-            for index, value in values.items() if Counter(values.values())[value] > 1]
+    return [
+        f"joints[{index}].{key}: {value} is another joint's too"
+        for key, values in (("servo.channel", channels), ("bus.id", ids))
+        for index, value in values.items()
+        if Counter(values.values())[value] > 1
+    ]
 
 
-def _misparked(park: dict[str, float], free: list[str], names: list[str]) -> list[str]:
-    faults = [f"park.{name}: missing" for name in free if name not in park]
+def _misparked(park: dict[str, float], independent: list[str], names: list[str]) -> list[str]:
+    faults = [f"park.{name}: missing" for name in independent if name not in park]
     for name in park:
         if name not in names:
             faults.append(f"park: there is no joint '{name}' (joints: {', '.join(names)})")
-        elif name not in free:
+        elif name not in independent:
             faults.append(f"park.{name}: follows from its coupling; leave it out")
     return faults
 
@@ -273,26 +293,49 @@ def _misparked(park: dict[str, float], free: list[str], names: list[str]) -> lis
 def _joint(place: int, section: _RevoluteSection | _PrismaticSection) -> Joint:
     if isinstance(section, _RevoluteSection):
         unit = math.radians(1.0)
-        limits = (section.min_deg, section.max_deg, section.max_velocity_deg_s,
-                  section.max_acceleration_deg_s2, section.max_jerk_deg_s3)
+        limits = (
+            section.min_deg,
+            section.max_deg,
+            section.max_velocity_deg_s,
+            section.max_acceleration_deg_s2,
+            section.max_jerk_deg_s3,
+        )
         minimum, maximum, velocity, acceleration, jerk = (math.radians(value) for value in limits)
     else:
         unit = 1.0
         minimum, maximum, velocity, acceleration, jerk = (
-            section.min_mm, section.max_mm, section.max_velocity_mm_s,
-            section.max_acceleration_mm_s2, section.max_jerk_mm_s3)
-    return Joint(section.name, JointKind(section.kind), math.radians(section.theta_deg), section.d_mm,
-                 section.a_mm, math.radians(section.alpha_deg), minimum, maximum, velocity, acceleration, jerk,
-                 None if section.servo is None else section.servo.servo(place, unit),
-                 None if section.bus is None else section.bus.servo(unit),
-                 section.thickness_mm)
+            section.min_mm,
+            section.max_mm,
+            section.max_velocity_mm_s,
+            section.max_acceleration_mm_s2,
+            section.max_jerk_mm_s3,
+        )
+    return Joint(
+        section.name,
+        JointKind(section.kind),
+        math.radians(section.theta_deg),
+        section.d_mm,
+        section.a_mm,
+        math.radians(section.alpha_deg),
+        minimum,
+        maximum,
+        velocity,
+        acceleration,
+        jerk,
+        None if section.servo is None else section.servo.servo(place, unit),
+        None if section.bus is None else section.bus.servo(unit),
+        section.thickness_mm,
+    )
 
 
 def _arm(section: _ArmSection) -> Arm:
     names = [joint.name for joint in section.joints]
     couplings = tuple(
-        Coupling(names.index(coupling.joint), math.radians(coupling.constant_deg),
-                 tuple((names.index(name), value) for name, value in coupling.coefficients.items()))
+        Coupling(
+            names.index(coupling.joint),
+            math.radians(coupling.constant_deg),
+            tuple((names.index(name), value) for name, value in coupling.coefficients.items()),
+        )
         for coupling in section.coupling
     )
     length = math.hypot(*section.pen.tool_axis)
@@ -307,14 +350,17 @@ def _arm(section: _ArmSection) -> Arm:
         closed_form=section.closed_form,
     )
 
+
 def _parked(arm: Arm, park: dict[str, float]) -> FloatArray:
     """(n_joints,) rad or mm; couplings fill in what they drive."""
-    free = [arm.joints[index] for index in arm.free_joints]
-    return frozen(arm.complete(np.array([park[joint.name] * joint.per_file_unit for joint in free])))
+    independent = [arm.joints[index] for index in arm.independent_joints]
+    return frozen(arm.complete(np.array([park[joint.name] * joint.per_file_unit for joint in independent])))
 
 
 def _beyond_limits(arm: Arm, parked: FloatArray) -> list[str]:
     values, low, high = arm.to_file_units(np.stack((parked, arm.minimum, arm.maximum)))
-    return [f"park.{joint.name}: {value:g} {joint.file_unit} is outside its limits of {least:g} to {most:g}"
-            for joint, value, least, most in zip(arm.joints, values, low, high, strict=True)
-            if not least - _ROUNDING <= value <= most + _ROUNDING]
+    return [
+        f"park.{joint.name}: {value:g} {joint.file_unit} is outside its limits of {least:g} to {most:g}"
+        for joint, value, least, most in zip(arm.joints, values, low, high, strict=True)
+        if not least - _ROUNDING <= value <= most + _ROUNDING
+    ]

@@ -28,7 +28,8 @@ def arm_description(arm: Arm) -> dict[str, Any]:
                 "max_velocity": _clean(joint.max_velocity / joint.per_file_unit),
                 "max_acceleration": _clean(joint.max_acceleration / joint.per_file_unit),
                 "max_jerk": _clean(joint.max_jerk / joint.per_file_unit),
-            } | ({} if joint.thickness_mm is None else {"thickness_mm": joint.thickness_mm})
+            }
+            | ({} if joint.thickness_mm is None else {"thickness_mm": joint.thickness_mm})
             for joint in arm.joints
         ],
         "dh": [

@@ -62,8 +62,9 @@ def told(detail: Any) -> tuple[str, str]:
     else:
         value = detail["input"]
     sentence = _SENTENCES.get(kind)
-    message = (detail["msg"].removeprefix("Value error, ") if sentence is None
-               else sentence.format(**detail.get("ctx", {})))
+    message = (
+        detail["msg"].removeprefix("Value error, ") if sentence is None else sentence.format(**detail.get("ctx", {}))
+    )
     # A whole section says less than what is wrong with it.
     is_section = value is None or isinstance(value, dict | BaseModel)
     return key, message + ("" if is_section else f" (value: {value!r:.60})")

@@ -34,8 +34,9 @@ def _monotone(table: list[list[float]]) -> list[list[float]]:
     rises = pulses_us[0] < pulses_us[1]
     for row, (before, after) in enumerate(pairwise(pulses_us)):
         if before == after or (before < after) != rises:
-            raise ValueError(f"its pulses have to go one way, not from {before:g} to {after:g} us at "
-                             f"{positions[row + 1]:g}")
+            raise ValueError(
+                f"its pulses have to go one way, not from {before:g} to {after:g} us at {positions[row + 1]:g}"
+            )
     return table
 
 
@@ -87,13 +88,19 @@ class _ServoSection(Section):
             curve = self.table
         else:
             zero_us, slope = self.pulse_at_zero_us or 0.0, self.slope or math.nan
-            curve = sorted(((pulse_us - self.trim_us - zero_us) / slope, pulse_us - self.trim_us)
-                           for pulse_us in (low_us, high_us))
+            curve = sorted(
+                ((pulse_us - self.trim_us - zero_us) / slope, pulse_us - self.trim_us) for pulse_us in (low_us, high_us)
+            )
         return Servo(
             channel=place if self.channel is None else self.channel,
             curve=tuple((position * per_file_unit, pulse_us) for position, pulse_us in curve),
-            direction=self.direction, trim_us=self.trim_us, pulse_range_us=(low_us, high_us),
-            resolution_us=self.resolution_us, dead_band_us=self.dead_band_us, backlash=self.play * per_file_unit)
+            direction=self.direction,
+            trim_us=self.trim_us,
+            pulse_range_us=(low_us, high_us),
+            resolution_us=self.resolution_us,
+            dead_band_us=self.dead_band_us,
+            backlash=self.play * per_file_unit,
+        )
 
 
 class TurningServoSection(_ServoSection):
@@ -146,8 +153,14 @@ class _BusSection(Section):
 
     def servo(self, per_file_unit: float) -> BusServo:
         low, high = self.count_range
-        return BusServo(self.id, self.count_at_zero, self.slope / per_file_unit, (low, high), self.dead_band_counts,
-                        self.play * per_file_unit)
+        return BusServo(
+            self.id,
+            self.count_at_zero,
+            self.slope / per_file_unit,
+            (low, high),
+            self.dead_band_counts,
+            self.play * per_file_unit,
+        )
 
 
 class TurningBusSection(_BusSection):

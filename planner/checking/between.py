@@ -11,7 +11,7 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.checking.chain import chain_poses
-from planner.checking.links import Bars, Rooms
+from planner.checking.links import Capsules, Rooms
 from planner.trajectory import Trajectory
 
 POINTS_PER_STEP = 10
@@ -45,8 +45,9 @@ def points_per_step(rate_hz: float) -> int:
     return int(np.clip(np.ceil(_POINTS_PER_SECOND / rate_hz), _FEWEST_PER_STEP, POINTS_PER_STEP))
 
 
-def positions_between(positions: FloatArray, interpolation: Interpolation, per_step: int = POINTS_PER_STEP
-                      ) -> Iterator[FloatArray]:
+def positions_between(
+    positions: FloatArray, interpolation: Interpolation, per_step: int = POINTS_PER_STEP
+) -> Iterator[FloatArray]:
     """Blocks (n_points, n_joints) that together are all positions at so many points a step: point k belongs to sample
     k // per_step and the last is the last sample."""
     n = len(positions)
@@ -59,7 +60,7 @@ def positions_between(positions: FloatArray, interpolation: Interpolation, per_s
         first = np.clip(step - degree // 2, 0, n - 1 - degree)
         around = positions[first[:, np.newaxis] + np.arange(degree + 1)]
         yield (weights[step - first] @ around).reshape(-1, positions.shape[1])
-    yield positions[n - 1:]
+    yield positions[n - 1 :]
 
 
 def _lagrange(at: FloatArray, degree: int) -> FloatArray:
@@ -89,13 +90,12 @@ class Sweep:
     rooms: Rooms | None
 
 
-def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation, per_step: int = POINTS_PER_STEP
-          ) -> Sweep:
+def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation, per_step: int = POINTS_PER_STEP) -> Sweep:
     """The arm's poses at and, with more than one point a step, between all samples."""
     positions = arm.from_file_units(trajectory.positions)
     n_points = (trajectory.n_samples - 1) * per_step + 1
     tip, lowest, tilt = np.empty((n_points, 3)), np.empty(n_points), np.empty(n_points)
-    bars = Bars(arm, chain_poses(arm, positions[:1]).rows)
+    bars = Capsules(arm, chain_poses(arm, positions[:1]).rows)
     rooms: list[tuple[FloatArray, IntArray]] = []
     start = 0
     for block in positions_between(positions, interpolation, per_step):

@@ -12,7 +12,7 @@ from planner.arrays import FloatArray
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ChainPoses:
-    """Where the chain is in n postures.
+    """Where the chain is in n configurations.
 
     tip_mm: (3, n) the origin of the last frame. lowest_mm: (n,) the height of the lowest node of the
     links, the tip aside: links are straight between nodes, so no part of one is lower.

@@ -1,9 +1,10 @@
-"""The independent verdict on a trajectory: nothing of the planner's own mathematics takes part in it."""
+"""The independent check result on a trajectory: nothing of the planner's own mathematics takes part in it."""
 
 from __future__ import annotations
 
 from planner.arms.arm import Arm
 from planner.checking.between import Interpolation, points_per_step, sweep
+from planner.checking.check_result import CheckResult
 from planner.checking.coverage import drawing_findings
 from planner.checking.joints import columns, couplings, position_limits, rate_limits, rest_at_the_ends
 from planner.checking.mapping import map_findings, within_the_canvas
@@ -17,13 +18,13 @@ from planner.checking.pen import (
     stroke_order,
     upright,
 )
-from planner.checking.verdict import Verdict
 from planner.drawing.drawing import Drawing
 from planner.trajectory import Trajectory
 
 
 def check_trajectory(
-        trajectory: Trajectory, arm: Arm, drawing: Drawing | None = None, tolerance_mm: float = 0.05) -> Verdict:
+    trajectory: Trajectory, arm: Arm, drawing: Drawing | None = None, tolerance_mm: float = 0.05
+) -> CheckResult:
     """Hold a trajectory against everything that one promises, at the samples and between them.
 
     Between samples the joints are taken both as straight lines and as cubics; the worse of the two counts.
@@ -32,7 +33,7 @@ def check_trajectory(
     """
     fitting = columns(trajectory, arm)
     if not fitting.passed:
-        return Verdict((fitting,))
+        return CheckResult((fitting,))
     per_step = points_per_step(trajectory.rate_hz)
     sweeps = [sweep(trajectory, arm, interpolation, per_step) for interpolation in Interpolation]
     findings = [
@@ -51,6 +52,9 @@ def check_trajectory(
         *lift_notes(trajectory, arm, sweeps[0], tolerance_mm),
     ]
     findings += within_the_canvas(trajectory, sweeps[0], tolerance_mm)
-    findings += (map_findings(trajectory, None, tolerance_mm) if drawing is None else
-                 drawing_findings(trajectory, drawing, sweeps, tolerance_mm))
-    return Verdict(tuple(findings))
+    findings += (
+        map_findings(trajectory, None, tolerance_mm)
+        if drawing is None
+        else drawing_findings(trajectory, drawing, sweeps, tolerance_mm)
+    )
+    return CheckResult(tuple(findings))

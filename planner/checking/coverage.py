@@ -9,11 +9,11 @@ import numpy as np
 
 from planner.arrays import BoolArray, FloatArray
 from planner.checking.between import Sweep
+from planner.checking.check_result import Finding, Place
 from planner.checking.mapping import map_findings, map_trouble, user_to_arm
 from planner.checking.pen import place_of
 from planner.checking.polyline import DenseLines, dense_lines
 from planner.checking.repeats import most_repeated
-from planner.checking.verdict import Finding, Place
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
@@ -31,7 +31,8 @@ _TOLD_SHARE = 0.005
 
 
 def drawing_findings(
-        trajectory: Trajectory, drawing: Drawing, sweeps: Sequence[Sweep], tolerance_mm: float) -> list[Finding]:
+    trajectory: Trajectory, drawing: Drawing, sweeps: Sequence[Sweep], tolerance_mm: float
+) -> list[Finding]:
     """Compare the tip while the pen is down, at and between samples, with the drawing's outlines where
     `svg_to_arm_mm` puts them."""
     trouble = map_trouble(trajectory, drawing)
@@ -44,8 +45,10 @@ def drawing_findings(
     shape = map_findings(trajectory, drawing, tolerance_mm)
     if not len(pen_lines[0].points_mm):
         missing_mm = float(wanted.length_at_points_mm().sum())
-        return [*shape, Finding("nothing missing", False,
-                                remark=f"the pen is never down: all {missing_mm:.1f} mm are missing")]
+        return [
+            *shape,
+            Finding("nothing missing", False, remark=f"the pen is never down: all {missing_mm:.1f} mm are missing"),
+        ]
     limit = tolerance_mm + FLATTENING_MM
     off_mm = [wanted.distance_mm(pen.points_mm) for pen in pen_lines]
     return [
@@ -96,8 +99,14 @@ def _user(arm_mm: FloatArray, affine: FloatArray) -> tuple[float, float]:
     return float(u), float(v)
 
 
-def _extra(trajectory: Trajectory, pen_lines: Sequence[DenseLines], off_mm: Sequence[FloatArray],
-           sweeps: Sequence[Sweep], limit: float, affine: FloatArray) -> Finding:
+def _extra(
+    trajectory: Trajectory,
+    pen_lines: Sequence[DenseLines],
+    off_mm: Sequence[FloatArray],
+    sweeps: Sequence[Sweep],
+    limit: float,
+    affine: FloatArray,
+) -> Finding:
     worst, best_place, remark = -1.0, Place(), ""
     for sweep, pen, distance in zip(sweeps, pen_lines, off_mm, strict=True):
         index = int(np.argmax(distance))
@@ -112,8 +121,14 @@ def _extra(trajectory: Trajectory, pen_lines: Sequence[DenseLines], off_mm: Sequ
     return Finding("nothing extra", worst <= limit, worst, limit, "mm", best_place, remark)
 
 
-def _missing(trajectory: Trajectory, wanted: DenseLines, wanted_lines: Sequence[FloatArray],
-             pen_lines: Sequence[DenseLines], limit: float, affine: FloatArray) -> Finding:
+def _missing(
+    trajectory: Trajectory,
+    wanted: DenseLines,
+    wanted_lines: Sequence[FloatArray],
+    pen_lines: Sequence[DenseLines],
+    limit: float,
+    affine: FloatArray,
+) -> Finding:
     """What is missing may be as much as the header says was left out; it has to be at least half of that, since lines
     that cross or cover it may hide some."""
     distance = np.max([pen.distance_mm(wanted.points_mm) for pen in pen_lines], axis=0)
@@ -123,11 +138,15 @@ def _missing(trajectory: Trajectory, wanted: DenseLines, wanted_lines: Sequence[
     outline = int(np.searchsorted(ends, wanted.source[index], side="right"))
     is_missing = distance > limit
     taps = np.array([len(line) == 1 for line in wanted_lines])
-    missing = LeftOut(float(wanted.length_at_points_mm()[is_missing].sum()),
-                      int(taps[np.searchsorted(ends, wanted.source[is_missing], side="right")].sum()))
+    missing = LeftOut(
+        float(wanted.length_at_points_mm()[is_missing].sum()),
+        int(taps[np.searchsorted(ends, wanted.source[is_missing], side="right")].sum()),
+    )
     told = trajectory.left_out
-    as_asked = (0.5 * told.length_mm - limit <= missing.length_mm <= (1 + _TOLD_SHARE) * told.length_mm + limit
-                and 0.5 * told.taps <= missing.taps <= told.taps)
+    as_asked = (
+        0.5 * told.length_mm - limit <= missing.length_mm <= (1 + _TOLD_SHARE) * told.length_mm + limit
+        and 0.5 * told.taps <= missing.taps <= told.taps
+    )
     x, y = wanted.points_mm[index].tolist()
     place = Place(tip_mm=(x, y), svg_user=_user(wanted.points_mm[index], affine))
     remark = f"from the pen path, outline {outline}"
@@ -137,15 +156,31 @@ def _missing(trajectory: Trajectory, wanted: DenseLines, wanted_lines: Sequence[
         return Finding("nothing missing", worst <= limit, worst, limit, "mm", place, remark)
     if as_asked:
         return Finding("nothing missing", True, remark=f"left out as asked: {missing}", place=place)
-    return Finding("nothing missing", False, missing.length_mm, told.length_mm, "mm", place,
-                   f"of line: {missing} are missing, and the header says that {told} were left out")
+    return Finding(
+        "nothing missing",
+        False,
+        missing.length_mm,
+        told.length_mm,
+        "mm",
+        place,
+        f"of line: {missing} are missing, and the header says that {told} were left out",
+    )
 
 
-def _drawn_once(trajectory: Trajectory, wanted: DenseLines, pen: DenseLines, is_extra: BoolArray, sweep: Sweep,
-                limit: float, affine: FloatArray) -> Finding:
+def _drawn_once(
+    trajectory: Trajectory,
+    wanted: DenseLines,
+    pen: DenseLines,
+    is_extra: BoolArray,
+    sweep: Sweep,
+    limit: float,
+    affine: FloatArray,
+) -> Finding:
     found = most_repeated(wanted, pen, is_extra, limit)
     point = int(pen.source[found.point])
-    place = replace(place_of(trajectory, int(sweep.sample[point]), point, sweep),
-                    svg_user=_user(pen.points_mm[found.point], affine))
-    return Finding("nothing twice", found.figure <= found.limit, found.figure, found.limit, found.unit, place,
-                   found.remark)
+    place = replace(
+        place_of(trajectory, int(sweep.sample[point]), point, sweep), svg_user=_user(pen.points_mm[found.point], affine)
+    )
+    return Finding(
+        "nothing twice", found.figure <= found.limit, found.figure, found.limit, found.unit, place, found.remark
+    )

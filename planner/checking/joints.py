@@ -19,7 +19,7 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray, IntArray
 from planner.checking.between import POINTS_PER_STEP, Interpolation, cubic_error, positions_between
-from planner.checking.verdict import Finding, Place
+from planner.checking.check_result import Finding, Place
 from planner.trajectory import Trajectory
 
 COUPLING_TOLERANCE_DEG = 1e-4
@@ -33,8 +33,12 @@ def columns(trajectory: Trajectory, arm: Arm) -> Finding:
     """Without the arm's joints in its columns, nothing else of a trajectory can be told."""
     if trajectory.columns == arm.column_names:
         return Finding("columns", True, remark=f"are the joints of {arm.name}")
-    return Finding("columns", False, remark=f"the file moves the joints {', '.join(trajectory.columns)}; "
-                                            f"arm '{arm.name}' has {', '.join(arm.column_names)}")
+    return Finding(
+        "columns",
+        False,
+        remark=f"the file moves the joints {', '.join(trajectory.columns)}; "
+        f"arm '{arm.name}' has {', '.join(arm.column_names)}",
+    )
 
 
 def rest_at_the_ends(trajectory: Trajectory, arm: Arm) -> list[Finding]:
@@ -45,7 +49,7 @@ def rest_at_the_ends(trajectory: Trajectory, arm: Arm) -> list[Finding]:
         positions, rounding = trajectory.positions[end], trajectory.rounding[end]
         worst: tuple[float, int, int, float, float] | None = None
         for stride in _strides(trajectory.n_samples - 1):
-            by_jerk = max_jerk * (stride / trajectory.rate_hz)**3 / 6
+            by_jerk = max_jerk * (stride / trajectory.rate_hz) ** 3 / 6
             limit = by_jerk * (1 + EXACTNESS) + rounding[0] + rounding[stride]
             moved = np.abs(positions[stride] - positions[0])
             joint = int(np.argmax(moved / limit))
@@ -57,8 +61,18 @@ def rest_at_the_ends(trajectory: Trajectory, arm: Arm) -> list[Finding]:
         remark = "in the step beside it" if stride < 2 else f"in the {stride} steps beside it"
         if moved_by > most and end.step:
             remark += " (is the file cut off?)"
-        findings.append(_joint_finding(trajectory, arm, check, joint, moved_by, most,
-                                       trajectory.n_samples - 1 if end.step else 0, remark=remark))
+        findings.append(
+            _joint_finding(
+                trajectory,
+                arm,
+                check,
+                joint,
+                moved_by,
+                most,
+                trajectory.n_samples - 1 if end.step else 0,
+                remark=remark,
+            )
+        )
     return findings
 
 
@@ -87,15 +101,25 @@ def position_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
         excess = _beyond(positions, low, high)
         limits = np.where(2 * positions > low + high, high, low)
         findings += [
-            _joint_finding(trajectory, arm, check, joint, float(positions[joint]), float(limits[joint]),
-                           int(samples[joint]), bool(excess[joint] <= allowance[joint]),
-                           f"within {low[joint]:g} and {high[joint]:g}")
-            for joint in range(arm.n_joints)]
+            _joint_finding(
+                trajectory,
+                arm,
+                check,
+                joint,
+                float(positions[joint]),
+                float(limits[joint]),
+                int(samples[joint]),
+                bool(excess[joint] <= allowance[joint]),
+                f"within {low[joint]:g} and {high[joint]:g}",
+            )
+            for joint in range(arm.n_joints)
+        ]
     return findings
 
 
-def _outermost(blocks: Iterable[FloatArray], points_per_sample: int, low: FloatArray,
-               high: FloatArray) -> tuple[FloatArray, IntArray]:
+def _outermost(
+    blocks: Iterable[FloatArray], points_per_sample: int, low: FloatArray, high: FloatArray
+) -> tuple[FloatArray, IntArray]:
     """(n_joints,) the position of each joint that is furthest out, and the sample at or before it."""
     positions, points = np.zeros(len(low)), np.zeros(len(low), dtype=np.int64)
     worst = np.full(len(low), -np.inf)
@@ -121,16 +145,29 @@ def rate_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
     findings = []
     rounding = trajectory.rounding
     for order, check, maximum in (
-        (1, "velocity", arm.max_velocity), (2, "acceleration", arm.max_acceleration), (3, "jerk", arm.max_jerk)):
+        (1, "velocity", arm.max_velocity),
+        (2, "acceleration", arm.max_acceleration),
+        (3, "jerk", arm.max_jerk),
+    ):
         if trajectory.n_samples <= order:
             continue
         for joint, limit in enumerate(arm.to_file_units(maximum).tolist()):
             worst = _worst_difference(
-                trajectory.positions[:, joint], rounding[:, joint], order, limit, trajectory.rate_hz)
-            findings.append(_joint_finding(
-                trajectory, arm, check, joint, worst.figure, worst.limit, worst.sample,
-                remark=f"over {order * worst.stride} steps" if worst.stride > 1 else "",
-                per="/s" + ("" if order == 1 else "²" if order == 2 else "³")))
+                trajectory.positions[:, joint], rounding[:, joint], order, limit, trajectory.rate_hz
+            )
+            findings.append(
+                _joint_finding(
+                    trajectory,
+                    arm,
+                    check,
+                    joint,
+                    worst.figure,
+                    worst.limit,
+                    worst.sample,
+                    remark=f"over {order * worst.stride} steps" if worst.stride > 1 else "",
+                    per="/s" + ("" if order == 1 else "²" if order == 2 else "³"),
+                )
+            )
     return findings
 
 
@@ -144,8 +181,9 @@ class _Difference:
     stride: int
 
 
-def _worst_difference(positions: FloatArray, rounding: FloatArray, order: int, limit: float, rate_hz: float
-                      ) -> _Difference:
+def _worst_difference(
+    positions: FloatArray, rounding: FloatArray, order: int, limit: float, rate_hz: float
+) -> _Difference:
     """The difference of one joint, over all strides, that is the largest share of what it may be."""
     worst = _Difference(0.0, limit, 0, 1)
     for stride in _strides((len(positions) - 1) // order):
@@ -153,37 +191,64 @@ def _worst_difference(positions: FloatArray, rounding: FloatArray, order: int, l
         for _ in range(order):
             difference = difference[stride:] - difference[:-stride]
             allowance = allowance[stride:] + allowance[:-stride]
-        rate = (rate_hz / stride)**order
+        rate = (rate_hz / stride) ** order
         allowed = limit * (1 + EXACTNESS) + allowance * rate
         share = np.abs(difference) * rate / allowed
         index = int(np.argmax(share))
         if share[index] > worst.figure / worst.limit:
-            worst = _Difference(float(np.abs(difference[index])) * rate, float(allowed[index]),
-                                index + -(-order * stride // 2), stride)
+            worst = _Difference(
+                float(np.abs(difference[index])) * rate, float(allowed[index]), index + -(-order * stride // 2), stride
+            )
         if float(allowance.max()) * rate <= _NEGLIGIBLE * limit:
             break
     return worst
 
 
 def couplings(trajectory: Trajectory, arm: Arm) -> list[Finding]:
-    """How far each driven joint is from what its coupling says. A finding a coupling."""
+    """How far each mimic joint is from what its coupling says. A finding a coupling."""
     findings = []
     positions = arm.from_file_units(trajectory.positions)
     for coupling in arm.couplings:
         wanted = coupling.constant_rad + sum(
-            coefficient * positions[:, other] for other, coefficient in coupling.coefficients)
+            coefficient * positions[:, other] for other, coefficient in coupling.coefficients
+        )
         gap_deg = np.degrees(np.abs(positions[:, coupling.joint] - wanted))
         sample = int(np.argmax(gap_deg))
-        findings.append(_joint_finding(
-            trajectory, arm, "coupling", coupling.joint, float(gap_deg[sample]), COUPLING_TOLERANCE_DEG, sample))
+        findings.append(
+            _joint_finding(
+                trajectory, arm, "coupling", coupling.joint, float(gap_deg[sample]), COUPLING_TOLERANCE_DEG, sample
+            )
+        )
     return findings
 
 
-def _joint_finding(trajectory: Trajectory, arm: Arm, check: str, joint: int, worst: float, limit: float, sample: int,
-                   passed: bool | None = None, remark: str = "", per: str = "") -> Finding:
+def _joint_finding(
+    trajectory: Trajectory,
+    arm: Arm,
+    check: str,
+    joint: int,
+    worst: float,
+    limit: float,
+    sample: int,
+    passed: bool | None = None,
+    remark: str = "",
+    per: str = "",
+) -> Finding:
     """A finding on a joint; passed, unless said otherwise, where worst is at most the limit."""
     stroke = int(trajectory.stroke[sample])
-    place = Place(sample / trajectory.rate_hz, sample, trajectory.line(sample), arm.joints[joint].name,
-                  stroke if stroke >= 0 else None)
-    return Finding(check, worst <= limit if passed is None else passed, worst, limit,
-                   arm.joints[joint].file_unit + per, place, remark)
+    place = Place(
+        sample / trajectory.rate_hz,
+        sample,
+        trajectory.line(sample),
+        arm.joints[joint].name,
+        stroke if stroke >= 0 else None,
+    )
+    return Finding(
+        check,
+        worst <= limit if passed is None else passed,
+        worst,
+        limit,
+        arm.joints[joint].file_unit + per,
+        place,
+        remark,
+    )

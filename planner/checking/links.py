@@ -1,4 +1,4 @@
-"""Links as round bars: how far they are from each other, and how low they come.
+"""Links as capsules: how far they are from each other, and how low they come.
 
 A link with a thickness is a bar about each segment of its row. Bars of one row are held square to each other. Two bars
 between which the chain is shorter than half of both thicknesses together touch at that joint whatever the arm does:
@@ -30,37 +30,41 @@ class Rooms:
     names: tuple[str, ...]
 
 
-class Bars:
+class Capsules:
     """The bars of an arm whose chain has these segments: the row of each, as in `ChainPoses.rows`."""
 
     def __init__(self, arm: Arm, rows: tuple[int, ...]) -> None:
         self._half_mm = [None if (thickness := arm.joints[row].thickness_mm) is None else thickness / 2 for row in rows]
         lengths = _greatest_lengths(arm)
-        thick = [bar for bar, half in enumerate(self._half_mm) if half is not None]
+        thick = [capsule for capsule, half in enumerate(self._half_mm) if half is not None]
         self._pairs = []
         for one, other in combinations(thick, 2):
             if rows[one] != rows[other]:
                 halves = (self._half_mm[one] or 0.0) + (self._half_mm[other] or 0.0)
-                self._pairs.append((one, other, halves, sum(lengths[one + 1:other]) < halves))
-        self.pair_names = tuple(f"{arm.joints[rows[one]].name} and {arm.joints[rows[other]].name}"
-                                for one, other, _, _ in self._pairs)
+                self._pairs.append((one, other, halves, sum(lengths[one + 1 : other]) < halves))
+        self.pair_names = tuple(
+            f"{arm.joints[rows[one]].name} and {arm.joints[rows[other]].name}" for one, other, _, _ in self._pairs
+        )
         # Up to the joint where the last row, which carries the pen, begins.
         self._counted = rows.index(rows[-1]) if rows else 0
 
     def rooms(self, poses: ChainPoses) -> tuple[FloatArray, IntArray]:
         """As in `Rooms`; there have to be pairs."""
         rooms = []
-        for one, other, halves, touch in self._pairs:
+        for one, other, halves, contact in self._pairs:
             near, start = poses.nodes_mm[one + 1], poses.nodes_mm[other]
             away, along = poses.nodes_mm[one] - near, poses.nodes_mm[other + 1] - start
-            if not touch:
+            if not contact:
                 rooms.append(_gap_mm(near, away, start, along) - halves)
                 continue
             sizes = np.linalg.norm(away, axis=0), np.linalg.norm(along, axis=0)
             folded: BoolArray = (away * along).sum(axis=0) > _RIGHT_ANGLE * sizes[0] * sizes[1]
             nothing = np.zeros_like(near)
-            gap = np.where(sizes[0] <= sizes[1], _gap_mm(near + away, nothing, start, along),
-                           _gap_mm(start + along, nothing, near, away))
+            gap = np.where(
+                sizes[0] <= sizes[1],
+                _gap_mm(near + away, nothing, start, along),
+                _gap_mm(start + along, nothing, near, away),
+            )
             rooms.append(np.where(folded, gap - halves, np.inf))
         table = np.stack(rooms)
         return table.min(axis=0), table.argmin(axis=0)

@@ -12,8 +12,8 @@ import numpy as np
 
 from planner.arrays import FloatArray
 from planner.checking.between import Sweep
+from planner.checking.check_result import Finding
 from planner.checking.pen import place_of
-from planner.checking.verdict import Finding
 from planner.drawing.drawing import Drawing
 from planner.trajectory import Trajectory
 
@@ -42,8 +42,11 @@ def map_findings(trajectory: Trajectory, drawing: Drawing | None, tolerance_mm: 
     affine, told = user_to_arm(trajectory), trajectory.placement
     trouble = "squeezes the drawing to a line" if _is_flat(affine) else ""
     if not trouble and (np.linalg.det(affine[:, :2]) > 0) != told.mirror:
-        trouble = ("does not mirror the drawing, and the header says that it is mirrored" if told.mirror else
-                   "mirrors the drawing, and the header does not say so")
+        trouble = (
+            "does not mirror the drawing, and the header says that it is mirrored"
+            if told.mirror
+            else "mirrors the drawing, and the header does not say so"
+        )
     if trouble or drawing is None:
         return [Finding("svg_to_arm_mm", not trouble, remark=trouble)]
     size_mm = float(np.linalg.norm(np.ptp(_corners(drawing, affine), axis=0)))
@@ -53,17 +56,41 @@ def map_findings(trajectory: Trajectory, drawing: Drawing | None, tolerance_mm: 
     scale, angle = np.sqrt(abs(np.linalg.det(turn))), np.arctan2(turn[1, 0] - turn[0, 1], np.trace(turn))
     cosine, sine = np.cos(angle), np.sin(angle)
     distorted = np.abs(turn / scale - np.array([[cosine, -sine], [sine, cosine]])).max() * size_mm
-    findings = [Finding("svg_to_arm_mm", bool(distorted <= tolerance_mm), float(distorted), tolerance_mm, "mm",
-                        remark="off the drawing's shape on its page")]
+    findings = [
+        Finding(
+            "svg_to_arm_mm",
+            bool(distorted <= tolerance_mm),
+            float(distorted),
+            tolerance_mm,
+            "mm",
+            remark="off the drawing's shape on its page",
+        )
+    ]
     if told.scale is not None:
         off_mm = abs(scale / told.scale - 1) * size_mm if told.scale > 0 else np.inf
-        findings.append(Finding("scale", bool(off_mm <= tolerance_mm), float(off_mm), tolerance_mm, "mm",
-                                remark=f"at the far end; {scale:.6g} mm on paper for one on the page"))
+        findings.append(
+            Finding(
+                "scale",
+                bool(off_mm <= tolerance_mm),
+                float(off_mm),
+                tolerance_mm,
+                "mm",
+                remark=f"at the far end; {scale:.6g} mm on paper for one on the page",
+            )
+        )
     if told.rotate_deg is not None:
         off_rad = np.radians(told.rotate_deg) - angle
         off_mm = abs(np.arctan2(np.sin(off_rad), np.cos(off_rad))) * size_mm
-        findings.append(Finding("rotation", bool(off_mm <= tolerance_mm), float(off_mm), tolerance_mm, "mm",
-                                remark=f"at the far end; turned by {np.degrees(angle):.6g} degrees"))
+        findings.append(
+            Finding(
+                "rotation",
+                bool(off_mm <= tolerance_mm),
+                float(off_mm),
+                tolerance_mm,
+                "mm",
+                remark=f"at the far end; turned by {np.degrees(angle):.6g} degrees",
+            )
+        )
     return findings
 
 
@@ -79,9 +106,17 @@ def within_the_canvas(trajectory: Trajectory, sweep: Sweep, tolerance_mm: float)
     over_mm = margin_mm + np.max([near - x, x - far, right - y, y - left], axis=0)
     index = int(np.argmax(over_mm))
     point = int(points[index])
-    return [Finding("within the canvas", bool(over_mm[index] <= tolerance_mm), float(over_mm[index]), tolerance_mm,
-                    "mm", place_of(trajectory, int(sweep.sample[point]), point, sweep),
-                    f"over its side, less the margin of {margin_mm:g} mm")]
+    return [
+        Finding(
+            "within the canvas",
+            bool(over_mm[index] <= tolerance_mm),
+            float(over_mm[index]),
+            tolerance_mm,
+            "mm",
+            place_of(trajectory, int(sweep.sample[point]), point, sweep),
+            f"over its side, less the margin of {margin_mm:g} mm",
+        )
+    ]
 
 
 def _is_flat(affine: FloatArray) -> bool:

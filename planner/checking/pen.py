@@ -9,7 +9,7 @@ import numpy as np
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.checking.between import Sweep
-from planner.checking.verdict import Finding, Place
+from planner.checking.check_result import Finding, Place
 from planner.counted import counted
 from planner.trajectory import Trajectory
 
@@ -33,20 +33,32 @@ def stroke_order(trajectory: Trajectory) -> list[Finding]:
         remark = f"stroke {stroke[begins[wrong[0]]]} begins where stroke {wrong[0]} should"
     findings = [Finding("strokes in order", not len(wrong), place=place, remark=remark)]
     differ = np.flatnonzero(pen != (stroke >= 0))
-    findings.append(Finding(
-        "pen down within strokes", not len(differ), place=place_of(trajectory, int(differ[0])) if len(differ) else None,
-        remark="pen is 1 exactly within strokes" if not len(differ) else "pen and stroke contradict each other"))
+    findings.append(
+        Finding(
+            "pen down within strokes",
+            not len(differ),
+            place=place_of(trajectory, int(differ[0])) if len(differ) else None,
+            remark="pen is 1 exactly within strokes" if not len(differ) else "pen and stroke contradict each other",
+        )
+    )
     for name, sample in (("first", 0), ("last", trajectory.n_samples - 1)):
         down = bool(pen[sample])
-        findings.append(Finding(f"pen up at the {name} sample", not down,
-                                place=place_of(trajectory, sample) if down else None))
+        findings.append(
+            Finding(f"pen up at the {name} sample", not down, place=place_of(trajectory, sample) if down else None)
+        )
     return findings
 
 
 def on_the_paper(trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_mm: float) -> list[Finding]:
     """Height of the tip while the pen is down, either way."""
-    return _worst(trajectory, sweeps, "tip on the paper while the pen is down", tolerance_mm, "mm",
-                  lambda sweep: (np.abs(sweep.tip_mm[:, 2]), sweep.down))
+    return _worst(
+        trajectory,
+        sweeps,
+        "tip on the paper while the pen is down",
+        tolerance_mm,
+        "mm",
+        lambda sweep: (np.abs(sweep.tip_mm[:, 2]), sweep.down),
+    )
 
 
 def pen_as_the_tip(trajectory: Trajectory, arm: Arm, sweep: Sweep) -> list[Finding]:
@@ -55,11 +67,11 @@ def pen_as_the_tip(trajectory: Trajectory, arm: Arm, sweep: Sweep) -> list[Findi
     Told by which way the tip goes. In a step that the flag changes in, it rises from the paper, more than it moves
     along it; in the next step within the stroke, it does not. A tip that rests with the pen up has not begun to rise.
     """
-    tip = sweep.tip_mm[::sweep.points_per_step]
+    tip = sweep.tip_mm[:: sweep.points_per_step]
     noise_mm = _tip_noise_mm(trajectory, arm)
     worst = (0.0, -1, "")
     for step in (1, -1):
-        edge = np.flatnonzero(trajectory.pen[1:-1] & ~trajectory.pen[1 + step:trajectory.n_samples - 1 + step]) + 1
+        edge = np.flatnonzero(trajectory.pen[1:-1] & ~trajectory.pen[1 + step : trajectory.n_samples - 1 + step]) + 1
         up, inner = edge + step, edge - step
         rise, along = tip[up, 2] - tip[edge, 2], np.linalg.norm(tip[up, :2] - tip[edge, :2], axis=1)
         stays: BoolArray = (along > np.maximum(rise, noise_mm)) | (rise < -noise_mm) | _rests(trajectory, arm, edge, up)
@@ -68,24 +80,39 @@ def pen_as_the_tip(trajectory: Trajectory, arm: Arm, sweep: Sweep) -> list[Findi
         leaves: BoolArray = trajectory.pen[inner] & (lift > np.maximum(slide, noise_mm))
         for wrong, samples, figure, remark in (
             (stays, up, np.maximum(along, np.abs(rise)), "the pen is up, and the tip still on the paper"),
-            (leaves, edge, lift, "the pen is down, and the tip off the paper")):
+            (leaves, edge, lift, "the pen is down, and the tip off the paper"),
+        ):
             figure = np.where(wrong, np.maximum(figure, noise_mm), 0.0)
             if len(figure) and figure.max() > worst[0]:
                 worst = float(figure.max()), int(samples[np.argmax(figure)]), remark
     figure_mm, sample, remark = worst
     if sample < 0:
         return [Finding("pen as the tip", True, remark="each stroke begins and ends with the tip on the paper")]
-    return [Finding("pen as the tip", False, figure_mm, unit="mm", remark=f"in this step: {remark}",
-                    place=place_of(trajectory, sample, sample * sweep.points_per_step, sweep))]
+    return [
+        Finding(
+            "pen as the tip",
+            False,
+            figure_mm,
+            unit="mm",
+            remark=f"in this step: {remark}",
+            place=place_of(trajectory, sample, sample * sweep.points_per_step, sweep),
+        )
+    ]
 
 
 def _tip_noise_mm(trajectory: Trajectory, arm: Arm) -> float:
     """How much of a step of the tip may be none: positions are rounded, and planned to a tenth of a micrometre."""
-    reach_mm = sum(abs(one.a_mm) + abs(one.d_mm) + (max(abs(one.minimum), abs(one.maximum))
-                                                    if one.kind is JointKind.PRISMATIC else 0.0) for one in arm.joints)
+    reach_mm = sum(
+        abs(one.a_mm)
+        + abs(one.d_mm)
+        + (max(abs(one.minimum), abs(one.maximum)) if one.kind is JointKind.PRISMATIC else 0.0)
+        for one in arm.joints
+    )
     rounding = arm.from_file_units(trajectory.rounding.max(axis=0, keepdims=True))[0]
-    moves = [amount * (1.0 if one.kind is JointKind.PRISMATIC else reach_mm)
-             for one, amount in zip(arm.joints, rounding.tolist(), strict=True)]
+    moves = [
+        amount * (1.0 if one.kind is JointKind.PRISMATIC else reach_mm)
+        for one, amount in zip(arm.joints, rounding.tolist(), strict=True)
+    ]
     return PLANNED_TO_MM + float(2 * sum(moves))
 
 
@@ -102,10 +129,22 @@ def _rests(trajectory: Trajectory, arm: Arm, one: IntArray, other: IntArray) -> 
 def above_the_paper(trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_mm: float) -> list[Finding]:
     """Depth below the paper, of the lifted tip and of every link; negative figures are above it."""
     return [
-        *_worst(trajectory, sweeps, "tip below the paper while the pen is up", tolerance_mm, "mm",
-                lambda sweep: (-sweep.tip_mm[:, 2], ~sweep.down)),
-        *_worst(trajectory, sweeps, "links below the paper", tolerance_mm, "mm",
-                lambda sweep: (-sweep.lowest_mm, np.ones(len(sweep.sample), dtype=bool))),
+        *_worst(
+            trajectory,
+            sweeps,
+            "tip below the paper while the pen is up",
+            tolerance_mm,
+            "mm",
+            lambda sweep: (-sweep.tip_mm[:, 2], ~sweep.down),
+        ),
+        *_worst(
+            trajectory,
+            sweeps,
+            "links below the paper",
+            tolerance_mm,
+            "mm",
+            lambda sweep: (-sweep.lowest_mm, np.ones(len(sweep.sample), dtype=bool)),
+        ),
     ]
 
 
@@ -119,13 +158,22 @@ def links_apart(trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_mm: f
     room = float(rooms.room_mm[point])
     if np.isinf(room):
         return [Finding("links apart", True, remark="none is folded under the next")]
-    return [Finding("links apart", room >= -tolerance_mm, room, 0.0, "mm",
-                    place_of(trajectory, int(sweep.sample[point]), point, sweep),
-                    f"between {rooms.names[rooms.pair[point]]}, {sweep.interpolation.value} joints")]
+    return [
+        Finding(
+            "links apart",
+            room >= -tolerance_mm,
+            room,
+            0.0,
+            "mm",
+            place_of(trajectory, int(sweep.sample[point]), point, sweep),
+            f"between {rooms.names[rooms.pair[point]]}, {sweep.interpolation.value} joints",
+        )
+    ]
 
 
 def straight_up_and_down(
-        trajectory: Trajectory, sweeps: Sequence[Sweep], clearance_mm: float, tolerance_mm: float) -> list[Finding]:
+    trajectory: Trajectory, sweeps: Sequence[Sweep], clearance_mm: float, tolerance_mm: float
+) -> list[Finding]:
     """Below clearance height (less the tolerance) a lifted tip stays over the point where it left the
     paper or over the one where it comes down: distance to the nearer of the two, seen from above."""
     down = np.flatnonzero(trajectory.pen)
@@ -149,26 +197,51 @@ def upright(trajectory: Trajectory, arm: Arm, sweeps: Sequence[Sweep]) -> list[F
     """Angle of the tool axis to straight down while the pen is down, for arms that have to hold it so."""
     if arm.pen.hold is not PenHold.TOOL_AXIS:
         return []
-    return _worst(trajectory, sweeps, "pen upright on the paper", TILT_TOLERANCE_DEG, "deg",
-                  lambda sweep: (np.degrees(sweep.tilt_rad), sweep.down))
+    return _worst(
+        trajectory,
+        sweeps,
+        "pen upright on the paper",
+        TILT_TOLERANCE_DEG,
+        "deg",
+        lambda sweep: (np.degrees(sweep.tilt_rad), sweep.down),
+    )
 
 
 def lift_notes(trajectory: Trajectory, arm: Arm, sweep: Sweep, tolerance_mm: float) -> list[Finding]:
     """What is worth knowing and no fault: the highest tip, and travels that stay below clearance height."""
     height = sweep.tip_mm[:, 2]
     top = int(np.argmax(height))
-    notes = [Finding(
-        "highest tip", True, float(height[top]), unit="mm", is_note=True,
-        remark=f"the arm's own lift is {arm.pen.lift_mm:g} mm", place=place_of(trajectory, int(sweep.sample[top])))]
+    notes = [
+        Finding(
+            "highest tip",
+            True,
+            float(height[top]),
+            unit="mm",
+            is_note=True,
+            remark=f"the arm's own lift is {arm.pen.lift_mm:g} mm",
+            place=place_of(trajectory, int(sweep.sample[top])),
+        )
+    ]
     down = np.flatnonzero(trajectory.pen)
     leaves = down[:-1][np.diff(down) > 1]
     returns = down[1:][np.diff(down) > 1]
     per_step, enough_mm = sweep.points_per_step, arm.pen.clearance_mm - tolerance_mm
-    low = [sample for sample, back in zip(leaves.tolist(), returns.tolist(), strict=True)
-           if height[sample * per_step:back * per_step].max() < enough_mm]
+    low = [
+        sample
+        for sample, back in zip(leaves.tolist(), returns.tolist(), strict=True)
+        if height[sample * per_step : back * per_step].max() < enough_mm
+    ]
     if low:
-        notes.append(Finding("travels below clearance", True, float(len(low)), is_note=True,
-                             remark=f"of {counted(len(leaves), 'lift')}", place=place_of(trajectory, low[0])))
+        notes.append(
+            Finding(
+                "travels below clearance",
+                True,
+                float(len(low)),
+                is_note=True,
+                remark=f"of {counted(len(leaves), 'lift')}",
+                place=place_of(trajectory, low[0]),
+            )
+        )
     return notes
 
 
@@ -183,8 +256,14 @@ def place_of(trajectory: Trajectory, sample: int, point: int | None = None, swee
     return Place(time_s, sample, trajectory.line(sample), stroke=stroke if stroke >= 0 else None, tip_mm=tip_mm)
 
 
-def _worst(trajectory: Trajectory, sweeps: Sequence[Sweep], check: str, limit: float, unit: str,
-           figure: Callable[[Sweep], tuple[FloatArray, BoolArray]]) -> list[Finding]:
+def _worst(
+    trajectory: Trajectory,
+    sweeps: Sequence[Sweep],
+    check: str,
+    limit: float,
+    unit: str,
+    figure: Callable[[Sweep], tuple[FloatArray, BoolArray]],
+) -> list[Finding]:
     """The worst figure among the points that count, over all interpolations; nothing where none counts."""
     found: list[tuple[float, int, Sweep]] = []
     for sweep in sweeps:
@@ -198,5 +277,14 @@ def _worst(trajectory: Trajectory, sweeps: Sequence[Sweep], check: str, limit: f
     worst, point, sweep = max(found, key=lambda entry: entry[0])
     sample = int(sweep.sample[point])
     between = point % sweep.points_per_step > 0
-    return [Finding(check, worst <= limit, worst, limit, unit, place_of(trajectory, sample, point, sweep),
-                    f"between samples, {sweep.interpolation.value} joints" if between else "")]
+    return [
+        Finding(
+            check,
+            worst <= limit,
+            worst,
+            limit,
+            unit,
+            place_of(trajectory, sample, point, sweep),
+            f"between samples, {sweep.interpolation.value} joints" if between else "",
+        )
+    ]

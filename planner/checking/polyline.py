@@ -47,14 +47,15 @@ class DenseLines:
         coarse = cKDTree(self.points_mm[few])
         distance = np.empty(len(points_mm))
         for start in range(0, len(points_mm), _POINTS_AT_ONCE):
-            block = points_mm[start:start + _POINTS_AT_ONCE]
+            block = points_mm[start : start + _POINTS_AT_ONCE]
             near = tree.query(block, k=_NEAREST, distance_upper_bound=NEAR_MM)
             gap, found = np.array(near[0]), np.array(near[1], dtype=np.int64)
             far = np.isinf(gap[:, 0])  # a search for neighbours that are far away is slow in a large tree
             found[far, 0] = few[coarse.query(block[far])[1]]
             found = np.where(np.isinf(gap) | far[:, None], found[:, :1], found)
-            distance[start:start + _POINTS_AT_ONCE] = np.min(
-                [self._beside(block, nearest) for nearest in found.T], axis=0)
+            distance[start : start + _POINTS_AT_ONCE] = np.min(
+                [self._beside(block, nearest) for nearest in found.T], axis=0
+            )
         return distance
 
     def _beside(self, points_mm: FloatArray, nearest: IntArray) -> FloatArray:
@@ -62,8 +63,10 @@ class DenseLines:
         before = np.maximum(nearest - 1, 0)
         before = np.where(self.joined[before], before, nearest)
         after = np.where(self.joined[nearest], nearest + 1, nearest)
-        beside: FloatArray = np.minimum(_to_segments(points_mm, self.points_mm[before], self.points_mm[nearest]),
-                                        _to_segments(points_mm, self.points_mm[nearest], self.points_mm[after]))
+        beside: FloatArray = np.minimum(
+            _to_segments(points_mm, self.points_mm[before], self.points_mm[nearest]),
+            _to_segments(points_mm, self.points_mm[nearest], self.points_mm[after]),
+        )
         return beside
 
 

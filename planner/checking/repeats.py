@@ -68,13 +68,22 @@ def most_repeated(wanted: DenseLines, pen: DenseLines, is_extra: BoolArray, tole
     total_mm = float(max(strokes.length_mm.sum(), outlines.length_mm.sum()))
     least_mm = _BITS_PER_RADIUS * total_mm / _MOST_BITS
     radii_mm = sorted({max(radius * tolerance_mm, least_mm) for radius in _RADII})
-    found = [_short_strokes(wanted, outlines, pen, strokes, is_extra, radii_mm[0], tolerance_mm),
-             *(_discs(wanted, outlines, pen, strokes, is_extra, radius_mm, tolerance_mm) for radius_mm in radii_mm)]
+    found = [
+        _short_strokes(wanted, outlines, pen, strokes, is_extra, radii_mm[0], tolerance_mm),
+        *(_discs(wanted, outlines, pen, strokes, is_extra, radius_mm, tolerance_mm) for radius_mm in radii_mm),
+    ]
     return max(found, key=lambda one: one.figure / one.limit)
 
 
-def _discs(wanted: DenseLines, outlines: _Lines, pen: DenseLines, strokes: _Lines, is_extra: BoolArray,
-           radius_mm: float, tolerance_mm: float) -> Repeat:
+def _discs(
+    wanted: DenseLines,
+    outlines: _Lines,
+    pen: DenseLines,
+    strokes: _Lines,
+    is_extra: BoolArray,
+    radius_mm: float,
+    tolerance_mm: float,
+) -> Repeat:
     """Where ends of outlines touch within the tolerance they may be joined, by half of it each."""
     bit_mm = radius_mm / _BITS_PER_RADIUS
     pen_bits, source = _bits(pen, strokes, bit_mm, whole=True)
@@ -87,7 +96,7 @@ def _discs(wanted: DenseLines, outlines: _Lines, pen: DenseLines, strokes: _Line
     worst = Repeat(0, 0.0, 1.0, "mm", "of line")
     centres = np.arange(0, len(pen_bits), _BITS_PER_RADIUS // 2)
     for start in range(0, len(centres), _DISCS_AT_ONCE):
-        block = centres[start:start + _DISCS_AT_ONCE]
+        block = centres[start : start + _DISCS_AT_ONCE]
         places = pen_bits[block]
         drawn = _count_within(pen_tree, places, radius_mm) * bit_mm
         there = _count_within(wanted_tree, places, radius_mm + tolerance_mm) * bit_mm
@@ -95,13 +104,25 @@ def _discs(wanted: DenseLines, outlines: _Lines, pen: DenseLines, strokes: _Line
         limit = _SLACK * there + ends * tolerance_mm / 2 + 2 * bit_mm
         index = int(np.argmax(drawn / limit))
         if drawn[index] / limit[index] > worst.figure / worst.limit:
-            worst = Repeat(int(source[block[index]]), float(drawn[index]), float(limit[index]), "mm",
-                           f"of line within {radius_mm:.2g} mm")
+            worst = Repeat(
+                int(source[block[index]]),
+                float(drawn[index]),
+                float(limit[index]),
+                "mm",
+                f"of line within {radius_mm:.2g} mm",
+            )
     return worst
 
 
-def _short_strokes(wanted: DenseLines, outlines: _Lines, pen: DenseLines, strokes: _Lines, is_extra: BoolArray,
-                   radius_mm: float, tolerance_mm: float) -> Repeat:
+def _short_strokes(
+    wanted: DenseLines,
+    outlines: _Lines,
+    pen: DenseLines,
+    strokes: _Lines,
+    is_extra: BoolArray,
+    radius_mm: float,
+    tolerance_mm: float,
+) -> Repeat:
     """For each stroke that is short, the strokes that pass its middle against the outlines that do. A longer stroke
     that ends there may be another piece of one that had to be split."""
     middles = (strokes.first + strokes.last) // 2
@@ -147,8 +168,11 @@ def _bits(lines: DenseLines, ends: _Lines, bit_mm: float, *, whole: bool) -> tup
     rank = np.arange(len(line)) - np.repeat(np.cumsum(counts) - counts, counts)
     along = _along_mm(lines)
     at = along[ends.first[line]] + (rank + 0.5) * (ends.length_mm / np.maximum(counts, 1))[line]
-    before = np.clip(np.searchsorted(along, at, side="right") - 1, ends.first[line],
-                     np.maximum(ends.last[line] - 1, ends.first[line]))
+    before = np.clip(
+        np.searchsorted(along, at, side="right") - 1,
+        ends.first[line],
+        np.maximum(ends.last[line] - 1, ends.first[line]),
+    )
     after = np.minimum(before + 1, ends.last[line])
     step = along[after] - along[before]
     share = np.clip((at - along[before]) / np.where(step > 0, step, 1.0), 0.0, 1.0)[:, np.newaxis]

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from planner.cli.terminal import print_lines, print_note
 from planner.errors import PlannerError
-from planner.workers import THREAD_VARIABLES
+from planner.execution.workers import THREAD_VARIABLES
 
 TRACEBACK_VARIABLE = "PLAN_TRACEBACK"
 EXIT_INTERRUPTED = 130
@@ -39,14 +39,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         return EXIT_INTERRUPTED
     except MemoryError as error:
         asked = f" ({error})" if str(error) else ""
-        print_note(f"error: this machine has not enough memory for it{asked}; a lower --rate, a larger --tolerance and"
-                   " fewer --workers take less")
+        print_note(
+            f"error: this machine has not enough memory for it{asked}; a lower --rate, a larger --tolerance and"
+            " fewer --workers take less"
+        )
         return EXIT_NO_MEMORY
     except Exception as error:
         if os.environ.get(TRACEBACK_VARIABLE):
             raise
-        print_note(f"error: this is a defect of the planner, not of the input: {type(error).__name__}: {error} "
-                   f"(set {TRACEBACK_VARIABLE}=1 to see where)")
+        print_note(
+            f"error: this is a defect of the planner, not of the input: {type(error).__name__}: {error} "
+            f"(set {TRACEBACK_VARIABLE}=1 to see where)"
+        )
         return EXIT_DEFECT
 
 

@@ -1,4 +1,4 @@
-"""`plan arm [NAME]`: the arms there are, one of them, or one of its postures."""
+"""`plan arm [NAME]`: the arms there are, one of them, or one of its configurations."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _DESCRIPTION = """\
 List the arms that come with the planner, or describe one: its Denavit-Hartenberg table, limits, couplings and pen.
-With --at, describe a posture of it: the pen's pose, the Jacobian, which motion is internal, which velocity
+With --at, describe a configuration of it: the pen's pose, the Jacobian, which motion is internal, which velocity
 impossible, and how far the tip strays where a joint is off."""
 
 _EPILOG = """\
@@ -34,11 +34,20 @@ def arm(arguments: list[str]) -> int:
     parser = Parser("plan arm", _DESCRIPTION, _EPILOG)
     parser.add_argument("arm", nargs="?", metavar="NAME|FILE")
     parser.add_argument("--json", action="store_true", help="print the description as JSON")
-    parser.add_argument("--at", nargs="+", type=angle_deg, metavar="Q",
-                        help="describe this posture: a position for each joint (deg, or mm where it slides), or for "
-                             "each that no coupling drives")
-    parser.add_argument("--frame", metavar="K", help="with --at: the frame that the Jacobian is expressed in, "
-                        "base, tool or the number of one between (default: base)")
+    parser.add_argument(
+        "--at",
+        nargs="+",
+        type=angle_deg,
+        metavar="Q",
+        help="describe this configuration: a position for each joint (deg, or mm where it slides), or for "
+        "each that no coupling drives",
+    )
+    parser.add_argument(
+        "--frame",
+        metavar="K",
+        help="with --at: the frame that the Jacobian is expressed in, "
+        "base, tool or the number of one between (default: base)",
+    )
     options = parser.parse_args(arguments)
 
     from planner.arms.arm_file import known_arms, load_arm
@@ -53,33 +62,36 @@ def arm(arguments: list[str]) -> int:
         return 0
     described = load_arm(options.arm)
     if options.at is not None:
-        return _posture(described, options.at, options.frame or "base", as_json=options.json)
+        return _configuration(described, options.at, options.frame or "base", as_json=options.json)
     if options.frame is not None:
         raise UsageError("--frame goes with --at")
-    paper, obstacle = _paper(described)
+    paper, infeasible_path = _paper(described)
     description = arm_description(described) | paper
     if options.json:
         print_lines([json.dumps(description, indent=2)])
     else:
-        print_lines([f"{described.name}: {described.source}", "", *_table(description, obstacle)])
+        print_lines([f"{described.name}: {described.source}", "", *_table(description, infeasible_path)])
     return 0
 
 
-def _posture(arm: Arm, positions: Sequence[float], frame: str, *, as_json: bool) -> int:
-    from planner.arms.posture_description import posture_description, posture_lines
+def _configuration(arm: Arm, positions: Sequence[float], frame: str, *, as_json: bool) -> int:
+    from planner.kinematics.configuration_description import configuration_description, configuration_lines
 
     numbers = {"base": 0, "tool": arm.n_joints} | {str(index): index for index in range(arm.n_joints + 1)}
     if frame not in numbers:
         raise UsageError(f"--frame {frame}: arm '{arm.name}' has base, tool and 0 to {arm.n_joints}")
-    posture = posture_description(arm, all_joints(arm, positions, "--at"), numbers[frame])
-    print_lines([json.dumps(posture, indent=2)] if as_json else [f"{arm.name}: {arm.source}", "",
-                                                                 *posture_lines(arm, posture)])
+    configuration = configuration_description(arm, all_joints(arm, positions, "--at"), numbers[frame])
+    print_lines(
+        [json.dumps(configuration, indent=2)]
+        if as_json
+        else [f"{arm.name}: {arm.source}", "", *configuration_lines(arm, configuration)]
+    )
     return 0
 
 
 def _paper(arm: Arm) -> tuple[dict[str, Any], str]:
     """The keys `reach_mm` and `canvas`; for an arm that has none, None and what is in the way."""
-    from planner.cli.workspace import paper_in_reach
+    from planner.workspace.reach import paper_in_reach
 
     try:
         paper = paper_in_reach(arm)
@@ -88,33 +100,50 @@ def _paper(arm: Arm) -> tuple[dict[str, Any], str]:
     low, high = paper.reach_mm
     return {
         "reach_mm": {"min": round(low, 3), "max": round(high, 3)},
-        "canvas": {"width_mm": round(paper.width_mm, 3), "height_mm": round(paper.height_mm, 3),
-                   "corners_arm_mm": paper.corners_arm_mm.round(3).tolist()},
+        "canvas": {
+            "width_mm": round(paper.width_mm, 3),
+            "height_mm": round(paper.height_mm, 3),
+            "corners_arm_mm": paper.corners_arm_mm.round(3).tolist(),
+        },
     }, ""
 
 
-def _table(arm: dict[str, Any], obstacle: str) -> list[str]:
+def _table(arm: dict[str, Any], infeasible_path: str) -> list[str]:
     rows = [("joint", "kind", "theta", "d", "a", "alpha", "min", "max", "velocity", "acceleration", "jerk", "unit")]
     for joint, dh in zip(arm["joints"], arm["dh"], strict=True):
-        numbers = (dh["theta_deg"], dh["d_mm"], dh["a_mm"], dh["alpha_deg"], joint["min"], joint["max"],
-                   joint["max_velocity"], joint["max_acceleration"], joint["max_jerk"])
+        numbers = (
+            dh["theta_deg"],
+            dh["d_mm"],
+            dh["a_mm"],
+            dh["alpha_deg"],
+            joint["min"],
+            joint["max"],
+            joint["max_velocity"],
+            joint["max_acceleration"],
+            joint["max_jerk"],
+        )
         rows.append((joint["name"], joint["kind"], *map(_number, numbers), joint["unit"]))
     lines = _columns(rows)
     lines.append("(theta and alpha in deg, d and a in mm; limits in the joint's unit, per s, s2 and s3)")
-    thick = [f"{joint['name']} {_number(joint['thickness_mm'])} mm"
-             for joint in arm["joints"] if "thickness_mm" in joint]
+    thick = [
+        f"{joint['name']} {_number(joint['thickness_mm'])} mm" for joint in arm["joints"] if "thickness_mm" in joint
+    ]
     if thick:
         lines.append(f"links that stay apart, by thickness: {', '.join(thick)}")
     for coupling in arm["coupling"]:
-        terms = "".join(f" {'+' if value >= 0 else '-'} {'' if abs(value) == 1 else f'{abs(value):g} '}{name}"
-                        for name, value in coupling["coefficients"].items())
+        terms = "".join(
+            f" {'+' if value >= 0 else '-'} {'' if abs(value) == 1 else f'{abs(value):g} '}{name}"
+            for name, value in coupling["coefficients"].items()
+        )
         lines.append(f"coupling: {coupling['joint']} = {_number(coupling['constant_deg'])} deg{terms}")
     pen = arm["pen"]
-    lines.append(f"pen: travels {_number(pen['lift_mm'])} mm above the paper, moves only straight up or down "
-                 f"below {_number(pen['clearance_mm'])} mm")
+    lines.append(
+        f"pen: travels {_number(pen['lift_mm'])} mm above the paper, moves only straight up or down "
+        f"below {_number(pen['clearance_mm'])} mm"
+    )
     reach, canvas = arm["reach_mm"], arm["canvas"]
-    if obstacle:
-        lines.append(f"canvas: none ({obstacle})")
+    if infeasible_path:
+        lines.append(f"canvas: none ({infeasible_path})")
         return lines
     corners = ", ".join(f"({_number(x)}, {_number(y)})" for x, y in canvas["corners_arm_mm"])
     lines.append(f"reach: {_number(reach['min'])} to {_number(reach['max'])} mm from the base")
@@ -131,8 +160,13 @@ def _columns(rows: Iterable[Sequence[str]]) -> list[str]:
     table = list(rows)
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     numeric = [all(_is_number(row[k]) for row in table[1:]) and len(table) > 1 for k in range(len(widths))]
-    return ["  ".join(cell.rjust(width) if right else cell.ljust(width)
-                      for cell, width, right in zip(row, widths, numeric, strict=True)).rstrip() for row in table]
+    return [
+        "  ".join(
+            cell.rjust(width) if right else cell.ljust(width)
+            for cell, width, right in zip(row, widths, numeric, strict=True)
+        ).rstrip()
+        for row in table
+    ]
 
 
 def _is_number(text: str) -> bool:

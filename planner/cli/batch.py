@@ -73,8 +73,10 @@ def _table(outcomes: Sequence[Outcome]) -> list[str]:
         if summary is None:
             lines.append(f"{name:<{width}}  {'-':>7}  {'-':>7}  {'-':>7}  none")
         else:
-            lines.append(f"{name:<{width}}  {summary.n_strokes:>7}  {summary.drawn_mm / 1000:>7.2f}"
-                         f"  {summary.duration_s:>7.1f}  {outcome.job.target}")
+            lines.append(
+                f"{name:<{width}}  {summary.n_strokes:>7}  {summary.drawn_mm / 1000:>7.2f}"
+                f"  {summary.duration_s:>7.1f}  {outcome.job.target}"
+            )
     planned = sum(outcome.summary is not None for outcome in outcomes)
     return [*lines, f"{planned} of {counted(len(outcomes), 'drawing')} planned"]
 
@@ -83,7 +85,12 @@ def _parser() -> Parser:
     parser = Parser("plan batch", _DESCRIPTION, _EPILOG)
     parser.usage = "plan batch FOLDER [-o OUTFOLDER] [options of plan]"
     parser.add_argument("folder", type=output_file, metavar="FOLDER")
-    parser.add_argument("-o", "--output", type=output_file, metavar="OUTFOLDER",
-                        help="where the trajectories go, made if missing (default: beside the drawings)")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=output_file,
+        metavar="OUTFOLDER",
+        help="where the trajectories go, made if missing (default: beside the drawings)",
+    )
     add_plan_options(parser)
     return parser

@@ -1,4 +1,4 @@
-"""`plan check traj.csv`: an independent verdict."""
+"""`plan check traj.csv`: an independent check result."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _EPILOG = """\
 examples:
   plan check traj.csv
   plan check traj.csv --drawing flower.svg --tolerance 0.1mm
-  plan check traj.csv --arm my_arm.toml --json verdict.json
+  plan check traj.csv --arm my_arm.toml --json check result.json
 
 exit codes: 0 everything holds; 1 something does not; 2 the files cannot be used"""
 
@@ -33,11 +33,16 @@ def check(arguments: list[str]) -> int:
     parser.add_argument("trajectory", type=input_file, metavar="traj.csv", help="- for standard input")
     parser.add_argument("--drawing", type=input_file, metavar="DRAWING.svg", help="compare what is drawn with this")
     parser.add_argument("--arm", metavar="NAME|FILE", help="judge it for this arm (default: the one in the trajectory)")
-    parser.add_argument("--tolerance", type=length_mm(minimum_mm=MIN_TOLERANCE_MM), metavar="LENGTH",
-                        default=PlanSettings().tolerance_mm,
-                        help="how far the pen may be off the drawing (default: %(default)g mm)")
-    parser.add_argument("--json", type=output_file, metavar="FILE",
-                        help="write the verdict there as well; - for standard output")
+    parser.add_argument(
+        "--tolerance",
+        type=length_mm(minimum_mm=MIN_TOLERANCE_MM),
+        metavar="LENGTH",
+        default=PlanSettings().tolerance_mm,
+        help="how far the pen may be off the drawing (default: %(default)g mm)",
+    )
+    parser.add_argument(
+        "--json", type=output_file, metavar="FILE", help="write the check result there as well; - for standard output"
+    )
     parser.add_argument("--quiet", action="store_true", help="print the faults alone, and nothing where there is none")
     options = parser.parse_args(arguments)
     sources = [options.trajectory] + ([options.drawing] if options.drawing else [])
@@ -52,9 +57,11 @@ def check(arguments: list[str]) -> int:
     trajectory = read_trajectory(options.trajectory)
     arm = load_arm(options.arm or trajectory.arm)
     drawing = read_drawing(options.drawing) if options.drawing else None
-    verdict = check_trajectory(trajectory, arm, drawing, options.tolerance)
+    check_result = check_trajectory(trajectory, arm, drawing, options.tolerance)
     if options.json:
         with written_aside(options.json) as file:
-            cast("IO[str]", file).write(json.dumps(verdict.as_dict(), indent=2) + "\n")
-    print_summary(map(str, verdict.faults) if options.quiet else [verdict.text()], *filter(None, [options.json]))
-    return 0 if verdict.passed else EXIT_FAULT
+            cast("IO[str]", file).write(json.dumps(check_result.as_dict(), indent=2) + "\n")
+    print_summary(
+        map(str, check_result.faults) if options.quiet else [check_result.text()], *filter(None, [options.json])
+    )
+    return 0 if check_result.passed else EXIT_FAULT

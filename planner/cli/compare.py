@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
 _DESCRIPTION = """\
 Compare the methods of inverse kinematics on the same targets: the documented damped least squares (dls), the same
-with tolerances fit for drawing (dls-drawing), a nonlinear programme for each target (nlp), the closed form
-(closed-form), and the postures that drawings are planned with (path). The targets are single points, points drawn
+with tolerances fit for drawing (dls-drawing), a nonlinear program for each target (nlp), the closed form
+(closed-form), and the configurations that drawings are planned with (path). The targets are single points, points drawn
 at random, or a drawing placed as plan places it. Of single targets the documented iterations are shown one by one."""
 
 _EPILOG = """\
@@ -48,7 +48,7 @@ exit codes: 0 compared, whatever methods failed; 2 unusable input or usage; 3 ou
 
 _MOST_TARGETS = 1_000_000
 _COUPLED = 1e-4
-"""Degrees by which a posture may miss its coupling."""
+"""Degrees by which a configuration may miss its coupling."""
 
 
 def compare(arguments: list[str]) -> int:
@@ -65,6 +65,7 @@ def compare(arguments: list[str]) -> int:
     targets, warnings = _targets(options, arm, settings)
     start = _start(arm, options.start) if options.start else default_start(arm, targets.kind)
     with progress(quiet=options.quiet) as show, interrupts_remembered() as raise_if_interrupted:
+
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
             show(stage, done, total)
@@ -95,13 +96,15 @@ def _targets(options: argparse.Namespace, arm: Arm, settings: PlanSettings) -> t
 
 
 def _start(arm: Arm, positions: Sequence[float]) -> FloatArray:
-    """Errors: UsageError for a posture that breaks a coupling: no method would begin there."""
+    """Errors: UsageError for a configuration that breaks a coupling: no method would begin there."""
     start = all_joints(arm, positions, "--start")
-    coupled = arm.complete(start[list(arm.free_joints)])
+    coupled = arm.complete(start[list(arm.independent_joints)])
     for joint, value, wanted in zip(arm.joints, start.tolist(), coupled.tolist(), strict=True):
         if abs(value - wanted) > _COUPLED * joint.per_file_unit:
-            raise UsageError(f"--start: the coupling of arm '{arm.name}' makes {joint.name}"
-                             f" {wanted / joint.per_file_unit:.6g} {joint.file_unit}; it may be left out")
+            raise UsageError(
+                f"--start: the coupling of arm '{arm.name}' makes {joint.name}"
+                f" {wanted / joint.per_file_unit:.6g} {joint.file_unit}; it may be left out"
+            )
     return start
 
 
@@ -124,11 +127,21 @@ def _print(comparison: Comparison, target: Path | None, picture: Path | None) ->
 
 def _check(options: argparse.Namespace, settings: PlanSettings) -> None:
     """Errors: UsageError for options that do not go together, OutputError where a result cannot be written."""
-    given = [name for name, value in (("DRAWING.svg", options.drawing), ("--target", options.target),
-                                      ("--random", options.random)) if value is not None]
+    given = [
+        name
+        for name, value in (
+            ("DRAWING.svg", options.drawing),
+            ("--target", options.target),
+            ("--random", options.random),
+        )
+        if value is not None
+    ]
     if len(given) != 1:
-        raise UsageError("one of DRAWING.svg, --target and --random says what to compare on"
-                         + (f", not {' and '.join(given)}" if given else "") + " (see plan compare --help)")
+        raise UsageError(
+            "one of DRAWING.svg, --target and --random says what to compare on"
+            + (f", not {' and '.join(given)}" if given else "")
+            + " (see plan compare --help)"
+        )
     if options.seed is not None and options.random is None:
         raise UsageError("--seed goes with --random")
     if options.drawing is None and settings != replace(PlanSettings(), arm=settings.arm, weights=settings.weights):
@@ -151,22 +164,45 @@ def _parser() -> Parser:
     parser = Parser("plan compare", _DESCRIPTION, _EPILOG)
     parser.usage = "plan compare DRAWING.svg | --target X Y [Z] ... | --random N [--seed S]  [options]"
     parser.add_argument("drawing", nargs="?", type=input_file, metavar="DRAWING.svg")
-    parser.add_argument("--target", nargs="+", action="append", type=coordinate_mm,
-                        metavar=("X", "Y [Z]"), help="a place for the pen, mm from the base (Z: default 0, the paper);"
-                        " negative numbers carry no suffix; may be given again")
-    parser.add_argument("--random", type=_count(1, _MOST_TARGETS), metavar="N",
-                        help="places on the paper, each within reach of a posture that was drawn at random")
+    parser.add_argument(
+        "--target",
+        nargs="+",
+        action="append",
+        type=coordinate_mm,
+        metavar=("X", "Y [Z]"),
+        help="a place for the pen, mm from the base (Z: default 0, the paper);"
+        " negative numbers carry no suffix; may be given again",
+    )
+    parser.add_argument(
+        "--random",
+        type=_count(1, _MOST_TARGETS),
+        metavar="N",
+        help="places on the paper, each within reach of a configuration that was drawn at random",
+    )
     parser.add_argument("--seed", type=_count(0, 2**32 - 1), metavar="S", help="of --random (default: 0)")
-    parser.add_argument("--start", nargs="+", type=angle_deg, metavar="Q",
-                        help="where methods that go from posture to posture begin: a position for each joint (deg, or "
-                             "mm where it slides), or for each that no coupling drives; with a drawing, at each "
-                             "stroke (default: the documents' start for their arm; with a drawing, and for other "
-                             "arms, the arm's home)")
-    parser.add_argument("--json", type=output_file, metavar="FILE",
-                        help="all figures as JSON; - for standard output, in place of the table")
-    parser.add_argument("--plot", type=output_file, metavar="FILE",
-                        help="a picture (.png, .svg or .pdf): the convergence and the postures, the way along the "
-                             "drawing, or the distributions")
+    parser.add_argument(
+        "--start",
+        nargs="+",
+        type=angle_deg,
+        metavar="Q",
+        help="where methods that go from configuration to configuration begin: a position for each joint (deg, or "
+        "mm where it slides), or for each that no coupling drives; with a drawing, at each "
+        "stroke (default: the documents' start for their arm; with a drawing, and for other "
+        "arms, the arm's home)",
+    )
+    parser.add_argument(
+        "--json",
+        type=output_file,
+        metavar="FILE",
+        help="all figures as JSON; - for standard output, in place of the table",
+    )
+    parser.add_argument(
+        "--plot",
+        type=output_file,
+        metavar="FILE",
+        help="a picture (.png, .svg or .pdf): the convergence and the configurations, the way along the "
+        "drawing, or the distributions",
+    )
     parser.add_argument("--quiet", action="store_true", help="no progress")
     add_arm_and_placement_options(parser)
     parser.set_defaults(method=PlanSettings().method.value)
@@ -175,8 +211,10 @@ def _parser() -> Parser:
 
 def _count(least: int, most: int) -> argparse._ActionType:
     """A reader of whole numbers in that range."""
+
     def read(text: str) -> int:
         if not (text.isascii() and text.isdigit() and least <= int(text) <= most):
             raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from {least} to {most}")
         return int(text)
+
     return read

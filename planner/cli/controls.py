@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from types import FrameType
 
-from hardware.playing import Request
+from hardware.playback.progress import Request
 
 KEYS = "space or p pauses and resumes, q or Ctrl-C stops and parks, x or Esc stops at once and holds"
 
@@ -46,7 +46,7 @@ class Controls:
 
     def _press(self, keys: bytes) -> None:
         keys = _SEQUENCES.sub(b"", keys)
-        for key in (keys[place:place + 1] for place in range(len(keys))):
+        for key in (keys[place : place + 1] for place in range(len(keys))):
             if key in _EMERGENCY_STOP:
                 self._demand(Request.EMERGENCY_STOP)
             elif key in _STOP:
@@ -101,8 +101,10 @@ class Controls:
 def controls() -> Iterator[Controls]:
     """Keys and signals become requests until this ends."""
     wishes = Controls()
-    with (_handling({"SIGINT": wishes.interrupt, "SIGTERM": wishes.interrupt, "SIGHUP": wishes.hang_up}),
-          wishes.keyboard()):
+    with (
+        _handling({"SIGINT": wishes.interrupt, "SIGTERM": wishes.interrupt, "SIGHUP": wishes.hang_up}),
+        wishes.keyboard(),
+    ):
         yield wishes
 
 

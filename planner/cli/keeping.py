@@ -6,10 +6,10 @@ import argparse
 from contextlib import suppress
 
 from hardware.clock import Clock
-from hardware.driver import Driver, Remembering
-from hardware.drivers import SIMULATORS
-from hardware.journal import Journal
-from hardware.journal_entry import Entry
+from hardware.drivers.driver import Driver, Remembering
+from hardware.drivers.table import SIMULATORS
+from hardware.playback.journal import Journal
+from hardware.playback.journal_entry import Entry
 from planner.arrays import FloatArray
 from planner.cli.one_run import is_kept, journal_of
 from planner.cli.resuming import FURTHER, in_doubt_words
@@ -25,8 +25,15 @@ class Keeping:
     before they are known to be drawn.
     """
 
-    def __init__(self, options: argparse.Namespace, beginning: Entry, last_stroke: int, driver: Driver, rate_hz: float,
-                 clock: Clock) -> None:
+    def __init__(
+        self,
+        options: argparse.Namespace,
+        beginning: Entry,
+        last_stroke: int,
+        driver: Driver,
+        rate_hz: float,
+        clock: Clock,
+    ) -> None:
         self._options, self._beginning, self._last_stroke = options, beginning, last_stroke
         self._rate_hz, self._clock = rate_hz, clock
         self._remembering = driver if isinstance(driver, Remembering) else None
@@ -78,8 +85,9 @@ class Keeping:
         """In place of the earlier run's. Errors: OutputError where this run resumes."""
         options = self._options
         if not is_kept(options.trajectory):
-            print_warnings([f"there will be nothing for --resume to go by: {options.trajectory} is no file to find "
-                            "again"])
+            print_warnings(
+                [f"there will be nothing for --resume to go by: {options.trajectory} is no file to find again"]
+            )
             return
         path = journal_of(options)
         try:

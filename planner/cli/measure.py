@@ -72,11 +72,14 @@ def measure(arguments: list[str]) -> int:
     write_measured(options.output, reading.measured)
     if not options.quiet:
         heights = sum(each.contact is not None for each in reading.measured)
-        print_note(f"{len(reading.measured)} of {len(marks)} marks found on sheet {reading.layout.name}, "
-                   f"{heights} with a height")
+        print_note(
+            f"{len(reading.measured)} of {len(marks)} marks found on sheet {reading.layout.name}, "
+            f"{heights} with a height"
+        )
         if options.bar is None:
-            print_note(f"check the bars on the sheet with a ruler: they must be {BAR_MM:g} mm; if they are not, give "
-                       "--bar MM")
+            print_note(
+                f"check the bars on the sheet with a ruler: they must be {BAR_MM:g} mm; if they are not, give --bar MM"
+            )
     print_warnings((*reading.warnings, *_not_found(reading.missing)))
     return 0
 
@@ -84,13 +87,24 @@ def measure(arguments: list[str]) -> int:
 def _parser() -> Parser:
     parser = Parser("plan measure", _DESCRIPTION, _EPILOG)
     parser.add_argument("photo", type=input_file, metavar="PHOTO", help="JPEG, PNG or TIFF; - for standard input")
-    parser.add_argument("--marks", type=input_file, metavar="marks.csv", required=True,
-                        help="what `plan pattern --marks` wrote for this sheet")
+    parser.add_argument(
+        "--marks",
+        type=input_file,
+        metavar="marks.csv",
+        required=True,
+        help="what `plan pattern --marks` wrote for this sheet",
+    )
     parser.add_argument("-o", "--output", type=output_file, metavar="measured.csv", required=True, help="the result")
-    parser.add_argument("--picture", type=output_file, metavar="FILE",
-                        help="draw what was read over the photo: .png, .svg or .pdf")
-    parser.add_argument("--bar", type=_bars_mm, metavar="MM[,MM]", help="how long the bars on the sheet are by a "
-                        "ruler: both, or the one across the page and the one along it (default: 150)")
+    parser.add_argument(
+        "--picture", type=output_file, metavar="FILE", help="draw what was read over the photo: .png, .svg or .pdf"
+    )
+    parser.add_argument(
+        "--bar",
+        type=_bars_mm,
+        metavar="MM[,MM]",
+        help="how long the bars on the sheet are by a "
+        "ruler: both, or the one across the page and the one along it (default: 150)",
+    )
     parser.add_argument("--quiet", action="store_true", help="say only what is wrong")
     return parser
 
@@ -102,8 +116,10 @@ def _bars_mm(text: str) -> tuple[float, float]:
         raise argparse.ArgumentTypeError(f"'{text}' has to be one length, or two with a comma between them")
     for length in lengths:
         if abs(length / BAR_MM - 1) > _MOST_OFF:
-            raise argparse.ArgumentTypeError(f"'{length:g}' is not near {BAR_MM:g} mm, which the bars are meant to be; "
-                                             "print the sheet anew, at 100 %")
+            raise argparse.ArgumentTypeError(
+                f"'{length:g}' is not near {BAR_MM:g} mm, which the bars are meant to be; "
+                "print the sheet anew, at 100 %"
+            )
     return lengths[0], lengths[-1]
 
 

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from hardware.claims import Claimed, claim, claim_of_journal, claim_of_port
-from hardware.drivers import SIMULATORS
-from hardware.journal import journal_path
+from hardware.drivers.table import SIMULATORS
+from hardware.playback.claims import Claimed, claim, claim_of_journal, claim_of_port
+from hardware.playback.journal import journal_path
 from planner.errors import HardwareError, TrajectoryFileError, UsageError
 
 _LOOP = "loop://"
@@ -37,8 +37,10 @@ def refuse_unkept(trajectory: Path) -> None:
     except OSError as error:
         raise TrajectoryFileError(str(trajectory), None, f"cannot be read: {error.strerror}") from error
     if not is_kept(trajectory):
-        raise UsageError(f"{trajectory} is no file that keeps its name, so that it cannot be told whether it is what "
-                         "was being drawn; write the trajectory to a file, or go on with --from-stroke")
+        raise UsageError(
+            f"{trajectory} is no file that keeps its name, so that it cannot be told whether it is what "
+            "was being drawn; write the trajectory to a file, or go on with --from-stroke"
+        )
 
 
 @contextmanager
@@ -50,8 +52,10 @@ def one_at_a_time(options: argparse.Namespace) -> Iterator[None]:
     by = f" by port {options.port}" if options.port else " on a simulated arm"
     journal = claim_of_journal(journal_of(options)) if is_kept(options.trajectory) else None
     port = claim_of_port(options.port) if options.port and options.port != _LOOP else None
-    with (_claimed(journal, f"drawing it{by}", UsageError, f"{options.trajectory} is being drawn by another run"),
-          _claimed(port, f"drawing {options.trajectory}", HardwareError, f"{options.port}: another run has it")):
+    with (
+        _claimed(journal, f"drawing it{by}", UsageError, f"{options.trajectory} is being drawn by another run"),
+        _claimed(port, f"drawing {options.trajectory}", HardwareError, f"{options.port}: another run has it"),
+    ):
         yield
 
 

@@ -14,9 +14,9 @@ from planner.cli.quantities import (
     MIN_RATE_HZ,
     MIN_TOLERANCE_MM,
     angle_deg,
+    configuration_weights,
     length_mm,
     number,
-    posture_weights,
     speed_mm_s,
 )
 from planner.cli.report import check_report, write_report_of
@@ -32,7 +32,7 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan batch FOLDER         plan every drawing of a folder
   plan run traj.csv         play a trajectory on the simulated arm
   plan ports                list the serial devices that are plugged in
-  plan check traj.csv       an independent verdict on a trajectory
+  plan check traj.csv       an independent check result on a trajectory
   plan plot traj.csv -o F   pictures of a trajectory
   plan compare DRAWING.svg  the same points by every method of inverse kinematics
   plan measure PHOTO        where the marks of a calibration sheet came
@@ -46,7 +46,7 @@ examples:
   plan flower.svg -o traj.csv --report flower      and a page about it, flower/index.html
   draw | plan - > traj.csv                         from a program that writes an SVG, as part of a pipe
   plan city.svg --workers 4                        with four processes; the result does not depend on them
-  plan flower.svg --weights time=3,reversals=0     postures for speed rather than for servos with backlash
+  plan flower.svg --weights time=3,reversals=0     configurations for speed rather than for servos with backlash
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
 
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
@@ -55,8 +55,15 @@ exit codes: 0 done; 1 a check found fault; 2 unusable input or usage; 3 cannot b
 4 hardware fault; 70 a defect of the planner; 130 interrupted"""
 
 
-_WORK = {"reading": 5, "placing": 3, "joining": 2, "ordering strokes": 10, "drawing motions": 50, "travels": 25,
-         "report": 5}
+_WORK = {
+    "reading": 5,
+    "placing": 3,
+    "joining": 2,
+    "ordering strokes": 10,
+    "drawing motions": 50,
+    "travels": 25,
+    "report": 5,
+}
 """The stages of a plan in their order, and roughly what share of the time each takes."""
 _FINE = 100
 
@@ -65,8 +72,7 @@ def plan(arguments: list[str]) -> int:
     """Plan one drawing. Errors: PlannerError."""
     options = _parser().parse_args(arguments)
     drawing: Path = options.drawing
-    target: Path = options.output or (
-        Path(STANDARD) if drawing == STANDARD_INPUT else Path(f"{drawing.stem}.csv"))
+    target: Path = options.output or (Path(STANDARD) if drawing == STANDARD_INPUT else Path(f"{drawing.stem}.csv"))
     check_target(target, drawing)
     if options.report:
         check_report(options.report, drawing, target)
@@ -76,6 +82,7 @@ def plan(arguments: list[str]) -> int:
     from planner.trajectory import write_trajectory
 
     with progress(quiet=options.quiet, single=True) as show, interrupts_remembered() as raise_if_interrupted:
+
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
             show(stage, *_of_all(stage, done, total))
@@ -97,29 +104,50 @@ def plan(arguments: list[str]) -> int:
 def _of_all(stage: str, done: int, total: int) -> tuple[int, int]:
     """How much of all stages is done, and how much there is: one bar, and one clock for the time left."""
     names = list(_WORK)
-    before = sum(_WORK[name] for name in names[:names.index(stage)])
+    before = sum(_WORK[name] for name in names[: names.index(stage)])
     return round(_FINE * (before + _WORK[stage] * done / max(total, 1))), _FINE * sum(_WORK.values())
 
 
 def settings_of(options: argparse.Namespace) -> PlanSettings:
     """The settings that options from `add_plan_options` amount to."""
     return PlanSettings(
-        arm=options.arm, method=Method(options.method), rate_hz=options.rate, tolerance_mm=options.tolerance,
-        speed_mm_s=options.speed, lowering_speed_mm_s=options.lowering_speed, dwell_s=options.dwell,
-        lift_mm=options.lift, canvas=CanvasKind(options.canvas), fit=options.fit, margin_mm=options.margin,
-        rotate_deg=options.rotate, skip_unreachable=options.skip_unreachable, weights=options.weights)
+        arm=options.arm,
+        method=Method(options.method),
+        rate_hz=options.rate,
+        tolerance_mm=options.tolerance,
+        speed_mm_s=options.speed,
+        lowering_speed_mm_s=options.lowering_speed,
+        dwell_s=options.dwell,
+        lift_mm=options.lift,
+        canvas=CanvasKind(options.canvas),
+        fit=options.fit,
+        margin_mm=options.margin,
+        rotate_deg=options.rotate,
+        skip_unreachable=options.skip_unreachable,
+        weights=options.weights,
+    )
 
 
 def _parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
     parser.usage = "plan DRAWING.svg [-o traj.csv] [options]\n       plan batch|run|ports|check|plot|compare|arm ..."
-    parser.add_argument("drawing", type=input_file, metavar="DRAWING.svg",
-                        help="the drawing, gzipped or not; - for standard input")
-    parser.add_argument("-o", "--output", type=output_file, metavar="FILE",
-                        help="the trajectory, - for standard output (default: the drawing's name with .csv, in the"
-                             " current folder; of a drawing from standard input, standard output)")
-    parser.add_argument("--report", type=output_file, metavar="DIR",
-                        help="write DIR/index.html too: a page with summary, pictures, tables and the check's verdict")
+    parser.add_argument(
+        "drawing", type=input_file, metavar="DRAWING.svg", help="the drawing, gzipped or not; - for standard input"
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=output_file,
+        metavar="FILE",
+        help="the trajectory, - for standard output (default: the drawing's name with .csv, in the"
+        " current folder; of a drawing from standard input, standard output)",
+    )
+    parser.add_argument(
+        "--report",
+        type=output_file,
+        metavar="DIR",
+        help="write DIR/index.html too: a page with summary, pictures, tables and the check's check result",
+    )
     add_plan_options(parser)
     return parser
 
@@ -128,41 +156,105 @@ def add_plan_options(parser: Parser) -> None:
     """The options that say how drawings are planned, whether one or many."""
     add_workers_option(parser)
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary, only warnings and errors")
-    parser.add_argument("--method", choices=[method.value for method in Method], default=PlanSettings().method.value,
-                        help="how postures are found (default: %(default)s)")
+    parser.add_argument(
+        "--method",
+        choices=[method.value for method in Method],
+        default=PlanSettings().method.value,
+        help="how configurations are found (default: %(default)s)",
+    )
     add_arm_and_placement_options(parser)
 
 
 def add_arm_and_placement_options(parser: Parser) -> None:
-    """The options that have a meaning whatever method finds the postures."""
+    """The options that have a meaning whatever method finds the configurations."""
     default = PlanSettings()
-    parser.add_argument("--arm", default=default.arm, metavar="NAME|FILE",
-                        help="an arm by name, or its .toml file (default: %(default)s)")
+    parser.add_argument(
+        "--arm",
+        default=default.arm,
+        metavar="NAME|FILE",
+        help="an arm by name, or its .toml file (default: %(default)s)",
+    )
     motion = parser.add_argument_group("motion")
-    motion.add_argument("--weights", type=posture_weights, default=default.weights, metavar="NAME=W,...",
-                        help="what method path spends spare joints on: time, sensitivity (of the tip to joint errors),"
-                             " reversals (of joints), limits (distance from them); those not named weigh 1")
-    motion.add_argument("--rate", type=number(minimum=MIN_RATE_HZ, maximum=MAX_RATE_HZ), default=default.rate_hz,
-                        metavar="HZ", help="samples a second (default: %(default)g)")
-    motion.add_argument("--tolerance", type=length_mm(minimum_mm=MIN_TOLERANCE_MM), default=default.tolerance_mm,
-                        metavar="LENGTH", help="how far the pen may be off the drawing (default: %(default)g mm)")
-    motion.add_argument("--speed", type=speed_mm_s, default=default.speed_mm_s, metavar="SPEED",
-                        help="fastest motion of the pen on the paper (default: %(default)g mm/s)")
-    motion.add_argument("--lift", type=length_mm(), default=default.lift_mm, metavar="LENGTH",
-                        help="height of the pen while travelling (default: the arm's own)")
-    motion.add_argument("--lowering-speed", type=speed_mm_s, default=default.lowering_speed_mm_s, metavar="SPEED",
-                        help="fastest lowering of the pen (default: %(default)g mm/s)")
-    motion.add_argument("--dwell", type=number(zero=True), default=default.dwell_s, metavar="SECONDS",
-                        help="rest on the paper after lowering (default: %(default)g s)")
+    motion.add_argument(
+        "--weights",
+        type=configuration_weights,
+        default=default.weights,
+        metavar="NAME=W,...",
+        help="what method path spends spare joints on: time, sensitivity (of the tip to joint errors),"
+        " reversals (of joints), limits (distance from them); those not named weigh 1",
+    )
+    motion.add_argument(
+        "--rate",
+        type=number(minimum=MIN_RATE_HZ, maximum=MAX_RATE_HZ),
+        default=default.rate_hz,
+        metavar="HZ",
+        help="samples a second (default: %(default)g)",
+    )
+    motion.add_argument(
+        "--tolerance",
+        type=length_mm(minimum_mm=MIN_TOLERANCE_MM),
+        default=default.tolerance_mm,
+        metavar="LENGTH",
+        help="how far the pen may be off the drawing (default: %(default)g mm)",
+    )
+    motion.add_argument(
+        "--speed",
+        type=speed_mm_s,
+        default=default.speed_mm_s,
+        metavar="SPEED",
+        help="fastest motion of the pen on the paper (default: %(default)g mm/s)",
+    )
+    motion.add_argument(
+        "--lift",
+        type=length_mm(),
+        default=default.lift_mm,
+        metavar="LENGTH",
+        help="height of the pen while travelling (default: the arm's own)",
+    )
+    motion.add_argument(
+        "--lowering-speed",
+        type=speed_mm_s,
+        default=default.lowering_speed_mm_s,
+        metavar="SPEED",
+        help="fastest lowering of the pen (default: %(default)g mm/s)",
+    )
+    motion.add_argument(
+        "--dwell",
+        type=number(zero=True),
+        default=default.dwell_s,
+        metavar="SECONDS",
+        help="rest on the paper after lowering (default: %(default)g s)",
+    )
 
     placement = parser.add_argument_group("placement")
-    placement.add_argument("--canvas", choices=[kind.value for kind in CanvasKind], default=default.canvas.value,
-                           help="the rectangle of the paper to draw on (default: %(default)s)")
-    placement.add_argument("--fit", action=argparse.BooleanOptionalAction, default=default.fit,
-                           help="scale the drawing to the canvas, or keep its true size (default: --fit)")
-    placement.add_argument("--margin", type=length_mm(zero=True), default=default.margin_mm, metavar="LENGTH",
-                           help="kept free along the edges of the canvas (default: %(default)g mm)")
-    placement.add_argument("--rotate", type=angle_deg, default=default.rotate_deg, metavar="DEGREES",
-                           help="turn the drawing before placing it (default: %(default)g)")
-    placement.add_argument("--skip-unreachable", action="store_true",
-                           help="leave out what the arm cannot reach, and say so, instead of failing")
+    placement.add_argument(
+        "--canvas",
+        choices=[kind.value for kind in CanvasKind],
+        default=default.canvas.value,
+        help="the rectangle of the paper to draw on (default: %(default)s)",
+    )
+    placement.add_argument(
+        "--fit",
+        action=argparse.BooleanOptionalAction,
+        default=default.fit,
+        help="scale the drawing to the canvas, or keep its true size (default: --fit)",
+    )
+    placement.add_argument(
+        "--margin",
+        type=length_mm(zero=True),
+        default=default.margin_mm,
+        metavar="LENGTH",
+        help="kept free along the edges of the canvas (default: %(default)g mm)",
+    )
+    placement.add_argument(
+        "--rotate",
+        type=angle_deg,
+        default=default.rotate_deg,
+        metavar="DEGREES",
+        help="turn the drawing before placing it (default: %(default)g)",
+    )
+    placement.add_argument(
+        "--skip-unreachable",
+        action="store_true",
+        help="leave out what the arm cannot reach, and say so, instead of failing",
+    )

@@ -55,9 +55,13 @@ A film's name is enough to ask for one."""
 
 _WITHOUT_TRAJECTORY = "workspace"
 _GOES_WITH = {
-    "drawing": ("drawing", "error"), "tolerance": ("error",), "stroke": ("phase",),
-    "from_s": ("profiles", "timeline", "film"), "to_s": ("profiles", "timeline", "film"),
-    "speed_factor": ("film",), "fps": ("film",),
+    "drawing": ("drawing", "error"),
+    "tolerance": ("error",),
+    "stroke": ("phase",),
+    "from_s": ("profiles", "timeline", "film"),
+    "to_s": ("profiles", "timeline", "film"),
+    "speed_factor": ("film",),
+    "fps": ("film",),
 }
 _KINDS = ("profiles", "drawing", "speed", "error", "phase", "timeline", "film", "workspace")
 _FILM_SUFFIXES = (".html", ".gif", ".mp4")
@@ -98,36 +102,66 @@ def plot(arguments: list[str]) -> int:
 
 def _parser() -> Parser:
     parser = Parser("plan plot", _DESCRIPTION, _EPILOG)
-    parser.add_argument("trajectory", nargs="?", type=input_file, metavar="traj.csv",
-                        help="- for standard input")
+    parser.add_argument("trajectory", nargs="?", type=input_file, metavar="traj.csv", help="- for standard input")
     parser.add_argument("-o", "--output", type=output_file, metavar="FILE", required=True, help="the picture or film")
-    parser.add_argument("--kind", choices=_KINDS, metavar="KIND",
-                        help="what to draw, see above (default: profiles, or film where FILE is one)")
-    parser.add_argument("--arm", metavar="NAME|FILE", help="draw it for this arm (default: the one in the trajectory; "
-                        "with --kind workspace drawing_arm)")
-    parser.add_argument("--drawing", type=input_file, metavar="DRAWING.svg",
-                        help="with --kind drawing or error: what was to be drawn")
-    parser.add_argument("--tolerance", type=length_mm(minimum_mm=MIN_TOLERANCE_MM), metavar="LENGTH",
-                        help="with --kind error: how far the pen may be off "
-                        f"(default: {PlanSettings().tolerance_mm:g} mm)")
-    parser.add_argument("--stroke", type=_index, metavar="K",
-                        help="with --kind phase: which stroke, from 0 (default: the one that takes longest)")
-    parser.add_argument("--from", dest="from_s", type=number(zero=True), metavar="SECONDS",
-                        help="with --kind profiles, timeline or film: begin there")
-    parser.add_argument("--to", dest="to_s", type=number(), metavar="SECONDS",
-                        help="with --kind profiles, timeline or film: end there")
+    parser.add_argument(
+        "--kind",
+        choices=_KINDS,
+        metavar="KIND",
+        help="what to draw, see above (default: profiles, or film where FILE is one)",
+    )
+    parser.add_argument(
+        "--arm",
+        metavar="NAME|FILE",
+        help="draw it for this arm (default: the one in the trajectory; with --kind workspace drawing_arm)",
+    )
+    parser.add_argument(
+        "--drawing", type=input_file, metavar="DRAWING.svg", help="with --kind drawing or error: what was to be drawn"
+    )
+    parser.add_argument(
+        "--tolerance",
+        type=length_mm(minimum_mm=MIN_TOLERANCE_MM),
+        metavar="LENGTH",
+        help=f"with --kind error: how far the pen may be off (default: {PlanSettings().tolerance_mm:g} mm)",
+    )
+    parser.add_argument(
+        "--stroke",
+        type=_index,
+        metavar="K",
+        help="with --kind phase: which stroke, from 0 (default: the one that takes longest)",
+    )
+    parser.add_argument(
+        "--from",
+        dest="from_s",
+        type=number(zero=True),
+        metavar="SECONDS",
+        help="with --kind profiles, timeline or film: begin there",
+    )
+    parser.add_argument(
+        "--to", dest="to_s", type=number(), metavar="SECONDS", help="with --kind profiles, timeline or film: end there"
+    )
     style = parser.add_argument_group("look")
     style.add_argument("--theme", choices=("light", "dark"), default="light", help="(default: %(default)s)")
-    style.add_argument("--size", choices=("screen", "paper"), default="screen",
-                       help="1920 pixels wide, or 180 mm for print (default: %(default)s)")
-    style.add_argument("--dpi", type=number(minimum=30, maximum=1200), metavar="N",
-                       help="pixels to the inch of a .png or a film (default: 150 for a screen, 300 for paper, 75 for "
-                       "films)")
+    style.add_argument(
+        "--size",
+        choices=("screen", "paper"),
+        default="screen",
+        help="1920 pixels wide, or 180 mm for print (default: %(default)s)",
+    )
+    style.add_argument(
+        "--dpi",
+        type=number(minimum=30, maximum=1200),
+        metavar="N",
+        help="pixels to the inch of a .png or a film (default: 150 for a screen, 300 for paper, 75 for films)",
+    )
     film = parser.add_argument_group("film")
-    film.add_argument("--speed-factor", type=number(minimum=0.01, maximum=10_000), metavar="X",
-                      help="times as fast as the arm (default: 1, or what makes it last 20 s)")
-    film.add_argument("--fps", type=number(minimum=1, maximum=50), metavar="N",
-                      help="pictures a second (default: 20)")
+    film.add_argument(
+        "--speed-factor",
+        type=number(minimum=0.01, maximum=10_000),
+        metavar="X",
+        help="times as fast as the arm (default: 1, or what makes it last 20 s)",
+    )
+    film.add_argument("--fps", type=number(minimum=1, maximum=50), metavar="N", help="pictures a second (default: 20)")
     film.add_argument("--quiet", action="store_true", help="no progress")
     return parser
 
@@ -181,8 +215,9 @@ def _figure(trajectory: Trajectory, arm: Arm, kind: str, options: argparse.Names
     return _on_paper(trajectory, arm, tip_mm, kind, options, look)
 
 
-def _on_paper(trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, kind: str, options: argparse.Namespace, look: Look
-              ) -> Figure:
+def _on_paper(
+    trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, kind: str, options: argparse.Namespace, look: Look
+) -> Figure:
     from planner.drawing.svg import read_drawing
 
     drawing = read_drawing(options.drawing) if options.drawing else None
@@ -195,8 +230,15 @@ def _on_paper(trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, kind: str, o
         from planner.checking.coverage import distance_from_drawing
         from planner.plots.coloured_path import plot_error
 
-        return plot_error(trajectory, tip_mm, distance_from_drawing(trajectory, drawing, tip_mm),
-                          options.tolerance or PlanSettings().tolerance_mm, canvas, reach_mm, look)
+        return plot_error(
+            trajectory,
+            tip_mm,
+            distance_from_drawing(trajectory, drawing, tip_mm),
+            options.tolerance or PlanSettings().tolerance_mm,
+            canvas,
+            reach_mm,
+            look,
+        )
     from planner.plots.drawing import plot_drawing
 
     return plot_drawing(trajectory, tip_mm, drawing, canvas, reach_mm, look)
@@ -204,7 +246,7 @@ def _on_paper(trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, kind: str, o
 
 def _paper_of(arm: Arm) -> tuple[FloatArray | None, tuple[float, float] | None]:
     """Canvas corners and reach; None for an arm without: a trajectory from elsewhere can be shown all the same."""
-    from planner.cli.workspace import paper_in_reach
+    from planner.workspace.reach import paper_in_reach
 
     try:
         paper = paper_in_reach(arm)
@@ -220,11 +262,11 @@ def _tip_mm(trajectory: Trajectory, arm: Arm) -> FloatArray:
 
 
 def _workspace(arm: Arm, look: Look) -> Figure:
-    from planner.arms.canvas import canvas_of
-    from planner.arms.paper_map import paper_map
-    from planner.cli.workspace import paper_in_reach
     from planner.plots.workspace import plot_workspace
     from planner.settings import CanvasKind
+    from planner.workspace.canvas import canvas_of
+    from planner.workspace.paper_map import paper_map
+    from planner.workspace.reach import paper_in_reach
 
     reach_mm = paper_in_reach(arm).reach_mm
     canvases = {}
@@ -241,7 +283,14 @@ def _film(trajectory: Trajectory, arm: Arm, options: argparse.Namespace, look: L
     from planner.plots.motion import motion_of
 
     canvas, reach_mm = _paper_of(arm)
-    motion = motion_of(trajectory, arm, _tip_mm(trajectory, arm), speed_factor=options.speed_factor, fps=options.fps,
-                       from_s=options.from_s, to_s=options.to_s)
+    motion = motion_of(
+        trajectory,
+        arm,
+        _tip_mm(trajectory, arm),
+        speed_factor=options.speed_factor,
+        fps=options.fps,
+        from_s=options.from_s,
+        to_s=options.to_s,
+    )
     with progress(quiet=options.quiet) as show:
         save_film(motion, options.output, canvas, reach_mm, look, show)

@@ -18,11 +18,16 @@ def ports(arguments: list[str]) -> int:
     """List serial devices. Errors: PlannerError."""
     Parser("plan ports", _DESCRIPTION, _EPILOG).parse_args(arguments)
 
+    from hardware.drivers.usb_ids import likely_controller
     from hardware.port import plugged_in
-    from hardware.usb_ids import likely_controller
 
     rows = [(port.device, port.description, likely_controller(port.usb_id)) for port in plugged_in()]
     widths = [max((len(row[column]) for row in rows), default=0) for column in (0, 1)]
-    print_lines([f"{device:<{widths[0]}}  {description:<{widths[1]}}  {likely}".rstrip()
-                 for device, description, likely in rows] or ["nothing is plugged in"])
+    print_lines(
+        [
+            f"{device:<{widths[0]}}  {description:<{widths[1]}}  {likely}".rstrip()
+            for device, description, likely in rows
+        ]
+        or ["nothing is plugged in"]
+    )
     return 0

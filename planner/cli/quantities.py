@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Callable
 
-from planner.settings import PostureWeights
+from planner.settings import ConfigurationWeights
 
 MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4, "px": 25.4 / 96}
 """Suffixes of lengths; a plain number is in millimetres, and a pixel is CSS's 1/96 inch."""
@@ -22,8 +22,10 @@ MIN_TOLERANCE_MM = 0.001
 
 def length_mm(*, zero: bool = False, minimum_mm: float = 0.0) -> Callable[[str], float]:
     """A reader of lengths such as `5`, `5mm` or `0.2in` that are positive (or `zero`) and at least the minimum."""
+
     def read(text: str) -> float:
         return _in_range(_in_mm(text, per_second=False), text, zero=zero, minimum=minimum_mm, unit=" mm")
+
     return read
 
 
@@ -39,21 +41,23 @@ def speed_mm_s(text: str) -> float:
 
 def number(*, zero: bool = False, minimum: float = 0.0, maximum: float = math.inf) -> Callable[[str], float]:
     """A reader of plain numbers that are positive (or `zero`) and within the range."""
+
     def read(text: str) -> float:
         return _in_range(_finite(text, text), text, zero=zero, minimum=minimum, maximum=maximum)
+
     return read
 
 
-def posture_weights(text: str) -> PostureWeights:
+def configuration_weights(text: str) -> ConfigurationWeights:
     """Weights such as `time=2,reversals=0.5`; those that are not named stay 1."""
-    names = [field.name for field in dataclasses.fields(PostureWeights)]
+    names = [field.name for field in dataclasses.fields(ConfigurationWeights)]
     weights: dict[str, float] = {}
     for part in text.split(","):
         name, separator, value = part.partition("=")
         if not separator or name.strip() not in names:
             raise argparse.ArgumentTypeError(f"'{part}' is not NAME=NUMBER with a name out of {', '.join(names)}")
         weights[name.strip()] = _in_range(_finite(value, text), text, zero=True)
-    chosen = PostureWeights(**weights)
+    chosen = ConfigurationWeights(**weights)
     if not any(getattr(chosen, name) for name in names):
         raise argparse.ArgumentTypeError("the weights are all zero; at least one has to be positive")
     return chosen
@@ -79,14 +83,18 @@ def _in_mm(text: str, *, per_second: bool) -> float:
     kind, ending = ("speed", "/s") if per_second else ("length", "")
     units = ", ".join(f"{unit}{ending}" for unit in MM_PER_UNIT)
     # A bare number of either kind, a length with a length's suffix, a speed with a speed's.
-    if match is None or (match[2] not in MM_PER_UNIT and match[2] != "") or bool(match[3]) != (
-            per_second and match[2] != ""):
+    if (
+        match is None
+        or (match[2] not in MM_PER_UNIT and match[2] != "")
+        or bool(match[3]) != (per_second and match[2] != "")
+    ):
         raise argparse.ArgumentTypeError(f"'{text}' is not a {kind}; wanted a number, plain or with {units}")
     return _finite(match[1], text) * MM_PER_UNIT.get(match[2], 1.0)
 
 
-def _in_range(value: float, text: str, *, zero: bool = False, minimum: float = 0.0, maximum: float = math.inf,
-              unit: str = "") -> float:
+def _in_range(
+    value: float, text: str, *, zero: bool = False, minimum: float = 0.0, maximum: float = math.inf, unit: str = ""
+) -> float:
     if value < 0 or (value == 0 and not zero):
         raise argparse.ArgumentTypeError(f"'{text}' has to be {'zero or more' if zero else 'positive'}")
     if value < minimum:

@@ -29,12 +29,23 @@ def write_report_of(planned: Plan, settings: PlanSettings, arguments: Sequence[s
     """Judge the plan and write the page about it; the page. Errors: OutputError."""
     from planner.arms.arm_file import load_arm
     from planner.checking.check import check_trajectory
-    from planner.cli.workspace import paper_in_reach
     from planner.report.report import Planned, write_report
+    from planner.workspace.reach import paper_in_reach
 
     arm = load_arm(settings.arm)
-    verdict = check_trajectory(planned.trajectory, arm, planned.drawing, settings.tolerance_mm)
+    check_result = check_trajectory(planned.trajectory, arm, planned.drawing, settings.tolerance_mm)
     page = folder / _PAGE
-    write_report(Planned(shlex.join(("plan", *arguments)), settings, planned.summary, planned.trajectory, arm,
-                         planned.drawing, verdict, paper_in_reach(arm).reach_mm), page)
+    write_report(
+        Planned(
+            shlex.join(("plan", *arguments)),
+            settings,
+            planned.summary,
+            planned.trajectory,
+            arm,
+            planned.drawing,
+            check_result,
+            paper_in_reach(arm).reach_mm,
+        ),
+        page,
+    )
     return page

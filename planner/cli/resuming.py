@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 
-from hardware.course import next_to_draw
-from hardware.driver import Driver, Remembering
-from hardware.journal import NOTED_EVERY_S, digest
-from hardware.journal_entry import Entry, read_journal
+from hardware.drivers.driver import Driver, Remembering
+from hardware.playback.course import next_to_draw
+from hardware.playback.journal import NOTED_EVERY_S, digest
+from hardware.playback.journal_entry import Entry, read_journal
 from planner.arms.arm import Arm
 from planner.arrays import IntArray
 from planner.cli.one_run import is_kept, journal_of
@@ -38,8 +38,10 @@ def where_to_begin(options: argparse.Namespace, arm: Arm, stroke: IntArray, driv
     if begin > stroke.max():
         print_note(f"the earlier run ended after all strokes were drawn{how}")
     else:
-        print_note(f"the earlier run ended before stroke {begin} was finished{how}; going on "
-                   f"{'from' if midst is None else 'in the midst of'} stroke {begin}{doubt}")
+        print_note(
+            f"the earlier run ended before stroke {begin} was finished{how}; going on "
+            f"{'from' if midst is None else 'in the midst of'} stroke {begin}{doubt}"
+        )
     return Entry(earlier.sha256, arm.name, options.driver, begin, "", sample=midst)
 
 
@@ -48,8 +50,10 @@ def in_doubt_words(strokes: range) -> str:
     if not strokes:
         return ""
     which = f"stroke {strokes[0]} was" if len(strokes) == 1 else f"strokes {strokes[0]} to {strokes[-1]} were"
-    return (f"; {which} sent, but the controller was not heard to have drawn so far: drawn again, unless you see the "
-            f"ink and take --from-stroke {strokes[-1] + 1} instead")
+    return (
+        f"; {which} sent, but the controller was not heard to have drawn so far: drawn again, unless you see the "
+        f"ink and take --from-stroke {strokes[-1] + 1} instead"
+    )
 
 
 def _earlier(options: argparse.Namespace, arm: Arm, stroke: IntArray) -> Entry:
@@ -59,25 +63,31 @@ def _earlier(options: argparse.Namespace, arm: Arm, stroke: IntArray) -> Entry:
     if earlier is None:
         raise UsageError(f"there is nothing to resume: no journal {path}")
     if earlier.sha256 != digest(options.trajectory):
-        raise UsageError(f"{options.trajectory} is not what was being drawn, for it has changed since; "
-                         "draw it without --resume")
+        raise UsageError(
+            f"{options.trajectory} is not what was being drawn, for it has changed since; draw it without --resume"
+        )
     if earlier.arm != arm.name:
         raise UsageError(f"arm '{earlier.arm}' was drawing {options.trajectory}, not '{arm.name}'")
-    if (max(earlier.next_stroke - 1, earlier.last_sent) > stroke.max()
-            or (earlier.come_to(earlier.reached) or 0) >= len(stroke)):
-        raise UsageError(f"{path} tells of strokes that {options.trajectory} does not have, so it is damaged; "
-                         "go on with --from-stroke")
+    if max(earlier.next_stroke - 1, earlier.last_sent) > stroke.max() or (earlier.come_to(earlier.reached) or 0) >= len(
+        stroke
+    ):
+        raise UsageError(
+            f"{path} tells of strokes that {options.trajectory} does not have, so it is damaged; "
+            "go on with --from-stroke"
+        )
     return earlier
 
 
 def _reached(earlier: Entry, driver: Driver | None) -> tuple[int, str]:
     """How many set points the earlier run reached, and a few words on what may be drawn twice."""
     remembered = driver.recall(earlier.tally) if isinstance(driver, Remembering) else None
-    if earlier.tally is None or earlier.settled:
+    if earlier.tally is None or earlier.converged:
         return earlier.reached, in_doubt_words(earlier.in_doubt)
     if not isinstance(driver, Remembering):
         return earlier.reached, FURTHER
     if remembered is not None and remembered >= earlier.reached:
         return remembered, ": the controller tells how far it came, and nothing is drawn twice"
-    return earlier.reached, (": the controller does not know how far it came, so what it drew at the last, "
-                             f"{driver.ahead_s + NOTED_EVERY_S:.1f} s at most, is drawn again")
+    return earlier.reached, (
+        ": the controller does not know how far it came, so what it drew at the last, "
+        f"{driver.ahead_s + NOTED_EVERY_S:.1f} s at most, is drawn again"
+    )

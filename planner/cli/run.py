@@ -12,8 +12,8 @@ from planner.cli.terminal import print_lines, print_summary
 from planner.errors import HardwareError, UsageError
 
 if TYPE_CHECKING:
-    from hardware.calibration import Calibration
-    from hardware.programme import Programme
+    from hardware.compensation.servo_values import Calibration
+    from hardware.playback.program import Program
     from planner.arms.arm import Arm
     from planner.arrays import FloatArray
 
@@ -25,9 +25,9 @@ def run(arguments: list[str]) -> int:
     options = parser().parse_args(arguments)
     refuse_contradictions(options)
 
-    from hardware.drivers import SIMULATORS, calibration_of
-    from hardware.preflight import servo_values, set_points
-    from hardware.programme import make_programme, parking
+    from hardware.drivers.table import SIMULATORS, calibration_of
+    from hardware.playback.preflight import servo_values, set_points
+    from hardware.playback.program import make_program, parking
     from planner.arms.arm_file import load_arm
     from planner.cli.controls import breaking_off
     from planner.cli.one_run import one_at_a_time, refuse_unkept
@@ -55,46 +55,61 @@ def run(arguments: list[str]) -> int:
         if (options.resume and beginning.complete) or (all_drawn and options.driver in SIMULATORS):
             print_lines([f"{options.trajectory} is drawn to its end; without --resume it is drawn again"])
             return 0
-        programme = parking(arm, positions, rate_hz, arm.park) if all_drawn else make_programme(
-            arm, positions, trajectory.stroke, rate_hz, from_stroke=beginning.next_stroke,
-            from_sample=beginning.sample, park=arm.park)
-        told = _told_to_servos(calibration, programme, arm)
+        program = (
+            parking(arm, positions, rate_hz, arm.park)
+            if all_drawn
+            else make_program(
+                arm,
+                positions,
+                trajectory.stroke,
+                rate_hz,
+                from_stroke=beginning.next_stroke,
+                from_sample=beginning.sample,
+                park=arm.park,
+            )
+        )
+        told = _told_to_servos(calibration, program, arm)
         if options.dry_run:
-            print_lines(_verdict(options, arm, programme, calibration, told))
+            print_lines(_check_result(options, arm, program, calibration, told))
             return 0
-        played = play_out(options, arm, programme, rig, beginning, last_stroke)
+        played = play_out(options, arm, program, rig, beginning, last_stroke)
     lines = played.lines()
     if rig.recording is not None and options.picture:
-        lines += save_pictures(options.picture, trajectory, arm, positions, rig.recording().positions,
-                               beginning.next_stroke)
+        lines += save_pictures(
+            options.picture, trajectory, arm, positions, rig.recording().positions, beginning.next_stroke
+        )
     if not options.quiet:
         print_summary(lines, *options.picture)
     return 0 if played.complete else EXIT_STOPPED
 
 
-def _told_to_servos(calibration: Calibration | None, programme: Programme, arm: Arm) -> FloatArray | None:
-    """(n, n_joints) pulses or counts of the whole programme. Errors: UsageError, before anything is sent."""
+def _told_to_servos(calibration: Calibration | None, program: Program, arm: Arm) -> FloatArray | None:
+    """(n, n_joints) pulses or counts of the whole program. Errors: UsageError, before anything is sent."""
     if calibration is None:
         return None
     try:
-        return calibration.to_servos(programme.positions)
+        return calibration.to_servos(program.positions)
     except HardwareError as error:
         raise UsageError(f"on the way from or to the park pose of arm '{arm.name}': {error}") from error
 
 
-def _verdict(options: argparse.Namespace, arm: Arm, programme: Programme, calibration: Calibration | None,
-             told: FloatArray | None) -> list[str]:
+def _check_result(
+    options: argparse.Namespace, arm: Arm, program: Program, calibration: Calibration | None, told: FloatArray | None
+) -> list[str]:
     """What a dry run says."""
-    from hardware.gentle_move import in_words
+    from hardware.motion.slow_transfer import in_words
 
-    approach_s, retreat_s = programme.approach / programme.rate_hz, programme.retreat / programme.rate_hz
-    lines = [f"{options.trajectory} can be played on arm '{arm.name}' by driver {options.driver}",
-             f"it takes {programme.duration_s:.2f} s: {approach_s:.2f} s to the drawing, "
-             f"{programme.duration_s - approach_s - retreat_s:.2f} s for it, and {retreat_s:.2f} s back",
-             f"park pose: {in_words(arm, programme.park)}"]
+    approach_s, retreat_s = program.approach / program.rate_hz, program.retreat / program.rate_hz
+    lines = [
+        f"{options.trajectory} can be played on arm '{arm.name}' by driver {options.driver}",
+        f"it takes {program.duration_s:.2f} s: {approach_s:.2f} s to the drawing, "
+        f"{program.duration_s - approach_s - retreat_s:.2f} s for it, and {retreat_s:.2f} s back",
+        f"park pose: {in_words(arm, program.park)}",
+    ]
     if calibration is None or told is None:
         return [*lines, "servos: the arm file says nothing of them"]
-    for joint, address, low, high in zip(arm.joints, calibration.addresses, told.min(axis=0), told.max(axis=0),
-                                         strict=True):
+    for joint, address, low, high in zip(
+        arm.joints, calibration.addresses, told.min(axis=0), told.max(axis=0), strict=True
+    ):
         lines.append(f"joint {joint.name}, servo {address}: {low:.1f} to {high:.1f} {calibration.unit}")
     return lines

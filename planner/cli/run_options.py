@@ -32,31 +32,60 @@ _FILMS = (".gif", ".mp4")
 def parser() -> Parser:
     options = Parser("plan run", _DESCRIPTION, _EPILOG)
     options.add_argument("trajectory", type=input_file, metavar="traj.csv", help="- for standard input")
-    options.add_argument("--driver", default="sim", metavar="NAME",
-                        help="what moves the arm: sim, mujoco, native, maestro, maestro-crc, ssc32, feetech or "
-                             "dynamixel (default: %(default)s)")
-    options.add_argument("--port", metavar="PORT|URL",
-                        help="where the controller is: a serial port as plan ports lists them, or a URL such as "
-                             "socket://HOST:PORT")
-    options.add_argument("--baud", type=_baud, metavar="RATE",
-                        help="of the serial line (default: the controller's usual)")
-    options.add_argument("--arm", metavar="NAME|FILE",
-                        help="play it on this arm, whose joints have to be the same (default: the one in the file)")
-    options.add_argument("--speed-factor", type=number(minimum=0.01, maximum=1.0), default=1.0, metavar="F",
-                        help="play slower by this factor, 0.01 to 1 (default: 1)")
+    options.add_argument(
+        "--driver",
+        default="sim",
+        metavar="NAME",
+        help="what moves the arm: sim, mujoco, native, maestro, maestro-crc, ssc32, feetech or "
+        "dynamixel (default: %(default)s)",
+    )
+    options.add_argument(
+        "--port",
+        metavar="PORT|URL",
+        help="where the controller is: a serial port as plan ports lists them, or a URL such as socket://HOST:PORT",
+    )
+    options.add_argument(
+        "--baud", type=_baud, metavar="RATE", help="of the serial line (default: the controller's usual)"
+    )
+    options.add_argument(
+        "--arm",
+        metavar="NAME|FILE",
+        help="play it on this arm, whose joints have to be the same (default: the one in the file)",
+    )
+    options.add_argument(
+        "--speed-factor",
+        type=number(minimum=0.01, maximum=1.0),
+        default=1.0,
+        metavar="F",
+        help="play slower by this factor, 0.01 to 1 (default: 1)",
+    )
     options.add_argument("--from-stroke", type=int, metavar="K", help="leave out the strokes before K, counted from 0")
-    options.add_argument("--resume", action="store_true",
-                        help="go on where an earlier run is known to have come to, from its journal: at the stroke "
-                             "that it did not finish, on native in its midst")
-    options.add_argument("--dry-run", action="store_true",
-                        help="examine everything and say what would be sent, but send nothing")
+    options.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on where an earlier run is known to have come to, from its journal: at the stroke "
+        "that it did not finish, on native in its midst",
+    )
+    options.add_argument(
+        "--dry-run", action="store_true", help="examine everything and say what would be sent, but send nothing"
+    )
     options.add_argument("--fast", action="store_true", help="sim, mujoco: do not wait for the time of each sample")
-    options.add_argument("--servos", choices=("ideal", "real"), default="ideal",
-                        help="sim: joints that follow exactly within their speeds, or with the resolution, dead band "
-                             "and backlash of the arm file and a lag (default: %(default)s)")
-    options.add_argument("--picture", type=output_file, action="append", default=[], metavar="FILE",
-                        help="sim, mujoco: what was drawn, as .svg at its true size, as .png or .pdf beside what was "
-                             "wanted; may be given more than once")
+    options.add_argument(
+        "--servos",
+        choices=("ideal", "real"),
+        default="ideal",
+        help="sim: joints that follow exactly within their speeds, or with the resolution, dead band "
+        "and backlash of the arm file and a lag (default: %(default)s)",
+    )
+    options.add_argument(
+        "--picture",
+        type=output_file,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="sim, mujoco: what was drawn, as .svg at its true size, as .png or .pdf beside what was "
+        "wanted; may be given more than once",
+    )
     options.add_argument("--film", type=output_file, metavar="FILE", help="mujoco: a .gif or .mp4 of the arm at work")
     options.add_argument("--quiet", action="store_true", help="no progress and no summary")
     return options
@@ -70,7 +99,7 @@ def _baud(text: str) -> int:
 
 def refuse_contradictions(options: argparse.Namespace) -> None:
     """Errors: UsageError."""
-    from hardware.drivers import DRIVERS, MUJOCO, SIMULATED, SIMULATORS
+    from hardware.drivers.table import DRIVERS, MUJOCO, SIMULATED, SIMULATORS
 
     if options.driver not in DRIVERS:
         raise UsageError(f"there is no driver '{options.driver}'; there are {', '.join(DRIVERS)}")
@@ -80,8 +109,11 @@ def refuse_contradictions(options: argparse.Namespace) -> None:
     if not simulated and not options.port and not options.dry_run:
         raise UsageError(f"--driver {options.driver} needs --port; plan ports lists what is plugged in")
     for name, given, drivers in (
-            ("fast", options.fast, SIMULATORS), ("picture", options.picture, SIMULATORS),
-            ("servos", options.servos != "ideal", (SIMULATED,)), ("film", options.film, (MUJOCO,))):
+        ("fast", options.fast, SIMULATORS),
+        ("picture", options.picture, SIMULATORS),
+        ("servos", options.servos != "ideal", (SIMULATED,)),
+        ("film", options.film, (MUJOCO,)),
+    ):
         if given and options.driver not in drivers:
             raise UsageError(f"--{name} goes with --driver {' or '.join(drivers)}, not with {options.driver}")
     if options.film and options.film.suffix.lower() not in _FILMS:

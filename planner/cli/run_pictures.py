@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from hardware.drawn import drawn_lines, write_svg
-from hardware.tip import link_nodes_mm
+from hardware.motion.tip import link_nodes_mm
+from hardware.simulation.ink import drawn_lines, write_svg
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.cli.output import check_target
@@ -25,27 +25,33 @@ def check_pictures(targets: Sequence[Path], source: Path) -> None:
             picture_format(target)
 
 
-def save_pictures(targets: Sequence[Path], trajectory: Trajectory, arm: Arm, set_points: FloatArray,
-                  positions: FloatArray, first_stroke: int) -> list[str]:
+def save_pictures(
+    targets: Sequence[Path],
+    trajectory: Trajectory,
+    arm: Arm,
+    set_points: FloatArray,
+    positions: FloatArray,
+    first_stroke: int,
+) -> list[str]:
     """Write what was drawn as the joints went through `positions`; how like it is what was wanted, in words.
 
     An .svg holds what was drawn at its true size, any other picture shows it beside what was wanted from
     `first_stroke` on. Errors: OutputError.
     """
-    from planner.checking.likeness import likeness
+    from planner.checking.drawing_error import drawing_error
 
     drawn = drawn_lines(arm, positions)
     wanted = list(_wanted(trajectory, arm, set_points, first_stroke))
-    text = likeness(drawn, wanted).text()
+    text = drawing_error(drawn, wanted).text()
     for target in targets:
         if _is_svg(target):
             write_svg(drawn, target)
         else:
+            from planner.plots.drawing_error import plot_drawing_error
             from planner.plots.figure_file import save_figure
-            from planner.plots.likeness import plot_likeness
 
             heading = trajectory.drawing or "trajectory"
-            save_figure(plot_likeness(wanted, drawn, heading, f"drawn on {arm.name}, {text}"), target)
+            save_figure(plot_drawing_error(wanted, drawn, heading, f"drawn on {arm.name}, {text}"), target)
     return [f"what was drawn is {text}"]
 
 

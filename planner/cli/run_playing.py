@@ -1,4 +1,4 @@
-"""`plan run`: the programme is played, watched by people and noted in a journal."""
+"""`plan run`: the program is played, watched by people and noted in a journal."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from hardware.clock import Clock, InstantClock, WallClock
-from hardware.driver import Driver
-from hardware.drivers import MUJOCO, SIMULATED, TELL_WHERE_THEY_STAND, calibration_of, make_driver
-from hardware.gentle_move import in_words
-from hardware.journal_entry import Entry
-from hardware.player import play
-from hardware.playing import Played, Progress
+from hardware.drivers.driver import Driver
+from hardware.drivers.table import MUJOCO, SIMULATED, TELL_WHERE_THEY_STAND, calibration_of, make_driver
+from hardware.motion.slow_transfer import in_words
+from hardware.playback.journal_entry import Entry
+from hardware.playback.player import play
+from hardware.playback.program import Program
+from hardware.playback.progress import Played, Progress
 from hardware.port import Line
-from hardware.programme import Programme
-from hardware.simulated_arm import Recording, Servos, SimulatedArm
+from hardware.simulation.simulated_arm import Recording, Servos, SimulatedArm
 from planner.arms.arm import Arm
 from planner.cli.controls import KEYS, controls
 from planner.cli.keeping import Keeping
@@ -24,7 +24,7 @@ from planner.cli.terminal import Show, print_note, print_warnings, progress
 from planner.errors import HardwareError
 
 if TYPE_CHECKING:
-    from hardware.mujoco_arm import MujocoArm
+    from hardware.simulation.mujoco_arm import MujocoArm
 
 _REPORTS_A_SECOND = 10
 
@@ -47,14 +47,16 @@ def set_up(options: argparse.Namespace, arm: Arm) -> Rig:
     return Rig(simulated, clock, lambda: simulated.recording)
 
 
-def play_out(options: argparse.Namespace, arm: Arm, programme: Programme, rig: Rig, beginning: Entry,
-             last_stroke: int) -> Played:
-    """What became of the programme. Errors: HardwareError, OutputError."""
-    keeping = Keeping(options, beginning, last_stroke, rig.driver, programme.rate_hz, rig.clock)
+def play_out(
+    options: argparse.Namespace, arm: Arm, program: Program, rig: Rig, beginning: Entry, last_stroke: int
+) -> Played:
+    """What became of the program. Errors: HardwareError, OutputError."""
+    keeping = Keeping(options, beginning, last_stroke, rig.driver, program.rate_hz, rig.clock)
     ended, complete = "broken off", False
     with progress(quiet=options.quiet, single=True) as show:
         try:
             with controls() as wishes:
+
                 def connected() -> None:
                     if wishes.has_keys and not options.quiet:
                         print_note(KEYS)
@@ -62,12 +64,21 @@ def play_out(options: argparse.Namespace, arm: Arm, programme: Programme, rig: R
 
                 rig.driver.open()
                 if not options.quiet and options.port:
-                    print_note(_announced(options, programme, arm))
+                    print_note(_announced(options, program, arm))
                 keeping.opened()
-                played = play(programme, arm, rig.driver, rig.clock, request=wishes.request,
-                              report=_reporting(show, rig.driver, programme.rate_hz, last_stroke),
-                              connected=connected, sent=keeping.sent, finished=keeping.finished,
-                              onward=keeping.onward, reached=keeping.reached)
+                played = play(
+                    program,
+                    arm,
+                    rig.driver,
+                    rig.clock,
+                    request=wishes.request,
+                    report=_reporting(show, rig.driver, program.rate_hz, last_stroke),
+                    connected=connected,
+                    sent=keeping.sent,
+                    finished=keeping.finished,
+                    onward=keeping.onward,
+                    reached=keeping.reached,
+                )
             ended, complete = played.end.value, played.complete
         except HardwareError as error:
             ended = str(error)
@@ -81,25 +92,33 @@ def _simulated(options: argparse.Namespace, arm: Arm, clock: Clock) -> Simulated
     if options.driver == SIMULATED:
         servos = Servos(options.servos)
         if servos is Servos.REAL and calibration_of(SIMULATED, arm) is None:
-            print_warnings([f"the file of arm '{arm.name}' says neither servo nor bus of all its joints: their servos "
-                            "lag behind, without dead band, backlash and resolution"])
+            print_warnings(
+                [
+                    f"the file of arm '{arm.name}' says neither servo nor bus of all its joints: their servos "
+                    "lag behind, without dead band, backlash and resolution"
+                ]
+            )
             servos = Servos.LAGGING
         return SimulatedArm(arm, clock, servos)
     if options.driver == MUJOCO:
-        from hardware.mujoco_arm import MujocoArm
+        from hardware.simulation.mujoco_arm import MujocoArm
 
         return MujocoArm(arm, clock, options.film)
     return None
 
 
-def _announced(options: argparse.Namespace, programme: Programme, arm: Arm) -> str:
+def _announced(options: argparse.Namespace, program: Program, arm: Arm) -> str:
     """What is going to happen once the controller answers."""
-    park, approach_s = in_words(arm, programme.park), programme.approach / programme.rate_hz
+    park, approach_s = in_words(arm, program.park), program.approach / program.rate_hz
     if options.driver in TELL_WHERE_THEY_STAND:
-        return (f"the arm goes slowly from where its servos stand to the park pose ({park}), from which it takes "
-                f"{approach_s:.1f} s to the drawing")
-    return (f"where the arm stands is not known: its servos are attached at the park pose ({park}), from which it "
-            f"takes {approach_s:.1f} s to the drawing")
+        return (
+            f"the arm goes slowly from where its servos stand to the park pose ({park}), from which it takes "
+            f"{approach_s:.1f} s to the drawing"
+        )
+    return (
+        f"where the arm stands is not known: its servos are attached at the park pose ({park}), from which it "
+        f"takes {approach_s:.1f} s to the drawing"
+    )
 
 
 def _reporting(show: Show, driver: Driver, rate_hz: float, last_stroke: int) -> Callable[[Progress], None]:

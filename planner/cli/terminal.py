@@ -108,8 +108,11 @@ def progress(*, quiet: bool, single: bool = False) -> Iterator[Show]:
 
 def _is_gone(stream: io.TextIOBase | object, error: OSError) -> bool:
     """Whether it is a terminal that somebody has closed."""
-    return (error.errno == errno.EIO and isinstance(stream, io.TextIOWrapper)
-            and stat.S_ISCHR(os.fstat(stream.fileno()).st_mode))
+    return (
+        error.errno == errno.EIO
+        and isinstance(stream, io.TextIOWrapper)
+        and stat.S_ISCHR(os.fstat(stream.fileno()).st_mode)
+    )
 
 
 def _silence(stream: io.TextIOBase | object) -> None:

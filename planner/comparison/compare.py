@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from planner.arms.arm import Arm, PenHold
-from planner.arms.kinematics import kinematics_of
 from planner.arrays import BoolArray, FloatArray
 from planner.comparison.convergence import Convergence, convergence
 from planner.comparison.drawing_time import StrokeTimes, stroke_times
@@ -19,7 +18,8 @@ from planner.comparison.targets import TargetKind, Targets
 from planner.comparison.worked_example import documented_start
 from planner.errors import PlanError, PlannerError, TargetBeyondReach
 from planner.inverse_kinematics.dls import FOR_DRAWING
-from planner.inverse_kinematics.stroke_postures import home_of
+from planner.inverse_kinematics.stroke_configurations import home_of
+from planner.kinematics.chain import kinematics_of
 from planner.settings import PlanSettings
 
 Report = Callable[[str, int, int], None]
@@ -66,7 +66,7 @@ def default_start(arm: Arm, kind: TargetKind) -> FloatArray:
     try:
         return arm.complete(home_of(arm))
     except PlanError:
-        return arm.complete(kinematics_of(arm).free_of((arm.minimum + arm.maximum) / 2))
+        return arm.complete(kinematics_of(arm).independent_of((arm.minimum + arm.maximum) / 2))
 
 
 def compare(arm: Arm, targets: Targets, start: FloatArray, settings: PlanSettings, report: Report) -> Comparison:
@@ -84,21 +84,25 @@ def compare(arm: Arm, targets: Targets, start: FloatArray, settings: PlanSetting
     if targets.kind is not TargetKind.SINGLE:
         return Comparison(arm, targets, start, _with_times(results, times), ())
     _require_reach(arm, targets, results)
-    return Comparison(arm, targets, start, tuple(results),
-                      tuple(convergence(arm, target, start) for target in targets.tips_mm))
+    return Comparison(
+        arm, targets, start, tuple(results), tuple(convergence(arm, target, start) for target in targets.tips_mm)
+    )
 
 
-def _result(method: ComparedMethod, arm: Arm, targets: Targets, start: FloatArray, settings: PlanSettings
-            ) -> MethodResult:
+def _result(
+    method: ComparedMethod, arm: Arm, targets: Targets, start: FloatArray, settings: PlanSettings
+) -> MethodResult:
     try:
         measured = measure(method, arm, settings.weights, targets, start)
     except PlannerError as error:
         return MethodResult(method, Figures(), None, refusal=str(error))
     missed = np.flatnonzero(~measured.solved)
-    failures = [Failures("targets", len(missed), method.obstacle, tuple(targets.tips_mm[missed[0]].tolist()))
-                ] if len(missed) else []
-    return MethodResult(method, figures_of(arm, targets, measured, iterates=method.iterates), measured,
-                        tuple(failures))
+    failures = (
+        [Failures("targets", len(missed), method.infeasible_path, tuple(targets.tips_mm[missed[0]].tolist()))]
+        if len(missed)
+        else []
+    )
+    return MethodResult(method, figures_of(arm, targets, measured, iterates=method.iterates), measured, tuple(failures))
 
 
 def _with_times(results: Sequence[MethodResult], times: dict[str, StrokeTimes]) -> tuple[MethodResult, ...]:
@@ -106,20 +110,24 @@ def _with_times(results: Sequence[MethodResult], times: dict[str, StrokeTimes]) 
     if not times:
         return tuple(results)
     drawn_by_all: BoolArray = np.all(np.isfinite([each.seconds for each in times.values()]), axis=0)
-    return tuple(_with_time(result, times[result.method.name], drawn_by_all) if result.method.name in times else result
-                 for result in results)
+    return tuple(
+        _with_time(result, times[result.method.name], drawn_by_all) if result.method.name in times else result
+        for result in results
+    )
 
 
 def _with_time(result: MethodResult, times: StrokeTimes, drawn_by_all: BoolArray) -> MethodResult:
     drawn = ~np.isnan(times.seconds)
     figures = replace(
-        result.figures, strokes_refused=int((~drawn).sum()),
+        result.figures,
+        strokes_refused=int((~drawn).sum()),
         drawing_s=float(times.seconds[drawn].sum()) if drawn.any() else None,
-        drawing_common_s=float(times.seconds[drawn_by_all].sum()) if drawn_by_all.any() else None)
-    if not times.obstacles:
+        drawing_common_s=float(times.seconds[drawn_by_all].sum()) if drawn_by_all.any() else None,
+    )
+    if not times.infeasible_paths:
         return replace(result, figures=figures)
-    first = times.obstacles[0]
-    refused = Failures("strokes", len(times.obstacles), first.reason, first.tip_mm)
+    first = times.infeasible_paths[0]
+    refused = Failures("strokes", len(times.infeasible_paths), first.reason, first.tip_mm)
     return replace(result, figures=figures, failures=(*result.failures, refused))
 
 

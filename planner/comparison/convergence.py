@@ -31,6 +31,9 @@ def convergence(arm: Arm, target_mm: FloatArray, start: FloatArray) -> Convergen
         if DOCUMENTED.met_by(state) or len(steps) > DOCUMENTED.most_iterations:
             break
     documented = documented_start(arm)
-    is_printed = (documented is not None and np.allclose(start, documented, rtol=0, atol=1e-9)
-                  and np.allclose(target_mm, MM_PER_CM * np.array(TARGET_CM), rtol=0, atol=1e-9))
+    is_printed = (
+        documented is not None
+        and np.allclose(start, documented, rtol=0, atol=1e-9)
+        and np.allclose(target_mm, MM_PER_CM * np.array(TARGET_CM), rtol=0, atol=1e-9)
+    )
     return Convergence(target_mm, tuple(steps), DOCUMENTED.met_by(steps[-1]), ITERATIONS if is_printed else ())

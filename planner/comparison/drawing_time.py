@@ -1,4 +1,4 @@
-"""How long the strokes of a drawing take with the postures of a method, timed as `plan` times them."""
+"""How long the strokes of a drawing take with the configurations of a method, timed as `plan` times them."""
 
 from __future__ import annotations
 
@@ -10,32 +10,35 @@ import numpy as np
 
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
-from planner.inverse_kinematics.stroke_postures import Obstacle
-from planner.portions import Kit, pieces_of, stroke_portions, timed_strokes
+from planner.execution.work_chunks import PlanContext, pieces_of, stroke_chunks, timed_strokes
+from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
 from planner.settings import PlanSettings
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StrokeTimes:
-    """seconds: (n_strokes,) with the pen down, NaN where the method is refused; obstacles: why, stroke by stroke."""
+    """seconds: (n_strokes,) with the pen down, NaN where the method is refused; infeasible paths: why, stroke by
+    stroke."""
 
     seconds: FloatArray
-    obstacles: Sequence[Obstacle]
+    infeasible_paths: Sequence[InfeasiblePath]
 
 
 def stroke_times(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> StrokeTimes:
     """Strokes (n, 2) in arm mm by the method of the settings, on the same pen paths whatever the method."""
-    kit = Kit.of(arm, settings)
-    pieces = pieces_of(kit, strokes)
-    portions = stroke_portions(kit, list(chain.from_iterable(pieces)))
-    results = chain.from_iterable(map(timed_strokes, portions))
+    context = PlanContext.of(arm, settings)
+    pieces = pieces_of(context, strokes)
+    chunks = stroke_chunks(context, list(chain.from_iterable(pieces)))
+    results = chain.from_iterable(map(timed_strokes, chunks))
     seconds = np.full(len(strokes), np.nan)
-    obstacles: list[Obstacle] = []
+    infeasible_paths: list[InfeasiblePath] = []
     for index, stroke_pieces in enumerate(pieces):
         made = list(islice(results, len(stroke_pieces)))
-        met = [result for result in made if isinstance(result, Obstacle)]
-        obstacles += met[:1]
+        met = [result for result in made if isinstance(result, InfeasiblePath)]
+        infeasible_paths += met[:1]
         if not met:
-            seconds[index] = sum(len(result.joints) - 1 for result in made
-                                 if not isinstance(result, Obstacle)) / settings.rate_hz
-    return StrokeTimes(seconds, obstacles)
+            seconds[index] = (
+                sum(len(result.joints) - 1 for result in made if not isinstance(result, InfeasiblePath))
+                / settings.rate_hz
+            )
+    return StrokeTimes(seconds, infeasible_paths)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arms.arm import Arm, JointKind
-from planner.arms.sensitivity import sideways_error
-from planner.arms.singularity import manipulability
 from planner.arrays import FloatArray, IntArray
 from planner.comparison.measured import Measured
 from planner.comparison.targets import TargetKind, Targets
+from planner.kinematics.sensitivity import sideways_error
+from planner.kinematics.singularity import manipulability
 
 LIMIT_SLACK = 1e-9
 """rad or mm: rounding that is forgiven at a joint limit."""
@@ -80,17 +80,29 @@ def figures_of(arm: Arm, targets: Targets, found: Measured, *, iterates: bool) -
         repeat = _by_unit(arm, np.abs(found.joints[both] - found.again[both]), np.max)
     ease, sideways = manipulability(arm, joints), sideways_error(arm, joints)
     return Figures(
-        solved_share=float(solved.mean()), usable_share=float((~outside).sum() / len(solved)),
+        solved_share=float(solved.mean()),
+        usable_share=float((~outside).sum() / len(solved)),
         iterations=float(found.iterations.mean()) if iterates else None,
         iterations_max=int(found.iterations.max()) if iterates else None,
-        cold_ms=1e3 * found.cold_s, warm_us=1e6 * found.warm_s,
-        error_mean_mm=_of(error, np.mean), error_max_mm=_of(error, np.max),
+        cold_ms=1e3 * found.cold_s,
+        warm_us=1e6 * found.warm_s,
+        error_mean_mm=_of(error, np.mean),
+        error_max_mm=_of(error, np.max),
         outside_share=float(outside.mean()) if some else None,
-        excess_joint=arm.joints[worst].name if outside.any() else None, excess_deg=excess_deg, excess_mm=excess_mm,
-        step_deg=step[0], step_mm=step[1], roughness_deg_mm2=roughness[0], roughness_mm_mm2=roughness[1],
-        manipulability_mean=_of(ease, np.mean), manipulability_min=_of(ease, np.min),
-        sideways_mean_mm=_of(sideways, np.mean), sideways_max_mm=_of(sideways, np.max),
-        repeat_deg=repeat[0], repeat_mm=repeat[1])
+        excess_joint=arm.joints[worst].name if outside.any() else None,
+        excess_deg=excess_deg,
+        excess_mm=excess_mm,
+        step_deg=step[0],
+        step_mm=step[1],
+        roughness_deg_mm2=roughness[0],
+        roughness_mm_mm2=roughness[1],
+        manipulability_mean=_of(ease, np.mean),
+        manipulability_min=_of(ease, np.min),
+        sideways_mean_mm=_of(sideways, np.mean),
+        sideways_max_mm=_of(sideways, np.max),
+        repeat_deg=repeat[0],
+        repeat_mm=repeat[1],
+    )
 
 
 def beyond_limits(arm: Arm, joints: FloatArray) -> FloatArray:
@@ -133,4 +145,4 @@ def _of(values: FloatArray, reduce: Callable[[FloatArray], float]) -> float | No
 
 
 def _rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values ** 2)))
+    return float(np.sqrt(np.mean(values**2)))

@@ -13,7 +13,7 @@ from planner.arrays import BoolArray, FloatArray
 from planner.comparison.methods import ComparedMethod, Solve
 from planner.comparison.targets import Targets
 from planner.inverse_kinematics.result import Solutions
-from planner.settings import PostureWeights
+from planner.settings import ConfigurationWeights
 
 _MOST_RUNS, _ENOUGH_S = 20, 0.2
 """Short runs are repeated, and the quickest counts."""
@@ -36,8 +36,14 @@ class Measured:
     warm_s: float
 
 
-def measure(method: ComparedMethod, arm: Arm, weights: PostureWeights, targets: Targets, start: FloatArray,
-            clock: Callable[[], float] = process_time) -> Measured:
+def measure(
+    method: ComparedMethod,
+    arm: Arm,
+    weights: ConfigurationWeights,
+    targets: Targets,
+    start: FloatArray,
+    clock: Callable[[], float] = process_time,
+) -> Measured:
     """Solve for all targets, forwards and backwards. Errors: PlannerError where the arm has no such method."""
     unknown = replace(arm)  # models are kept by an arm's identity: of this one nothing has been built yet
     began = clock()
@@ -46,9 +52,16 @@ def measure(method: ComparedMethod, arm: Arm, weights: PostureWeights, targets: 
     cold_s = clock() - began
     found, warm_s = _timed(solve, targets, start, clock)
     back = solve(targets.backwards(), start)
-    return Measured(arm.complete(found.postures), found.converged, found.iterations.astype(np.float64),
-                    found.error_mm, arm.complete(back.postures[::-1]), back.converged[::-1], cold_s,
-                    warm_s / len(targets.tips_mm))
+    return Measured(
+        arm.complete(found.configurations),
+        found.converged,
+        found.iterations.astype(np.float64),
+        found.error_mm,
+        arm.complete(back.configurations[::-1]),
+        back.converged[::-1],
+        cold_s,
+        warm_s / len(targets.tips_mm),
+    )
 
 
 def _timed(solve: Solve, targets: Targets, start: FloatArray, clock: Callable[[], float]) -> tuple[Solutions, float]:

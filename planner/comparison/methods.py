@@ -1,4 +1,4 @@
-"""The ways to postures that are compared: each is built once for an arm, and then solves for many targets."""
+"""The ways to configurations that are compared: each is built once for an arm, and then solves for many targets."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arms.arm import Arm
-from planner.arms.closed_forms import closed_form_postures
-from planner.arms.kinematics import kinematics_of
-from planner.arms.posture_field import posture_sheets, sheet_references
-from planner.arms.projection import project
 from planner.arrays import BoolArray, FloatArray
 from planner.comparison.targets import TargetKind, Targets
 from planner.inverse_kinematics import dls, nlp
+from planner.inverse_kinematics.closed_forms import closed_form_configurations
 from planner.inverse_kinematics.result import Solutions
-from planner.settings import Method, PostureWeights
+from planner.kinematics.chain import kinematics_of
+from planner.kinematics.projection import project
+from planner.redundancy.configuration_map import branch_references, configuration_branches
+from planner.settings import ConfigurationWeights, Method
 
 Solve = Callable[[Targets, FloatArray], Solutions]
 """Targets, and the joints (n_joints,) that each course of them starts from."""
@@ -27,66 +27,76 @@ _ROUNDING_MM = 1e-6
 @dataclass(frozen=True, slots=True)
 class ComparedMethod:
     """build: the solver for an arm; it raises PlannerError where the arm has none. tolerance_mm: how far from its
-    target a solved tip may be. obstacle: why a target is not solved. drawn_by: the method that `plan` draws with."""
+    target a solved tip may be. infeasible path: why a target is not solved. drawn_by: the method that `plan` draws
+    with."""
 
     name: str
     title: str
-    build: Callable[[Arm, PostureWeights], Solve]
+    build: Callable[[Arm, ConfigurationWeights], Solve]
     tolerance_mm: float
-    obstacle: str
+    infeasible_path: str
     iterates: bool
     drawn_by: Method | None
 
 
-def _by_dls(settings: dls.DlsSettings) -> Callable[[Arm, PostureWeights], Solve]:
-    def build(arm: Arm, weights: PostureWeights) -> Solve:
+def _by_dls(settings: dls.DlsSettings) -> Callable[[Arm, ConfigurationWeights], Solve]:
+    def build(arm: Arm, weights: ConfigurationWeights) -> Solve:
         return lambda targets, start: _course_by_course(
-            targets, lambda tips_mm: dls.solve_sequence(arm, tips_mm, start, settings))
+            targets, lambda tips_mm: dls.solve_sequence(arm, tips_mm, start, settings)
+        )
 
     return build
 
 
-def _by_nlp(arm: Arm, weights: PostureWeights) -> Solve:
+def _by_nlp(arm: Arm, weights: ConfigurationWeights) -> Solve:
     nlp.nlp_solver(arm)
-    free_of = kinematics_of(arm).free_of
+    independent_of = kinematics_of(arm).independent_of
     return lambda targets, start: _course_by_course(
-        targets, lambda tips_mm: nlp.solve_sequence(arm, tips_mm, free_of(start),
-                                                    settle=targets.kind is TargetKind.DRAWING))
+        targets,
+        lambda tips_mm: nlp.solve_sequence(
+            arm, tips_mm, independent_of(start), settle=targets.kind is TargetKind.DRAWING
+        ),
+    )
 
 
-def _by_closed_form(arm: Arm, weights: PostureWeights) -> Solve:
-    references = closed_form_postures(arm)
+def _by_closed_form(arm: Arm, weights: ConfigurationWeights) -> Solve:
+    references = closed_form_configurations(arm)
 
     def solve(targets: Targets, start: FloatArray) -> Solutions:
-        postures = references(arm, targets.tips_mm)
-        solved: BoolArray = np.all(np.isfinite(postures), axis=1)
-        return _solutions(arm, postures, solved, targets.tips_mm)
+        configurations = references(arm, targets.tips_mm)
+        solved: BoolArray = np.all(np.isfinite(configurations), axis=1)
+        return _solutions(arm, configurations, solved, targets.tips_mm)
 
     return solve
 
 
-def _by_path(arm: Arm, weights: PostureWeights) -> Solve:
-    sheets = posture_sheets(arm, weights)
+def _by_path(arm: Arm, weights: ConfigurationWeights) -> Solve:
+    branches = configuration_branches(arm, weights)
 
     def solve(targets: Targets, start: FloatArray) -> Solutions:
         tips_mm = targets.tips_mm
         firsts = targets.firsts if targets.kind is TargetKind.DRAWING else np.arange(len(tips_mm))
-        return _solutions(arm, *project(kinematics_of(arm), sheet_references(sheets, tips_mm, firsts), tips_mm),
-                          tips_mm)
+        return _solutions(
+            arm, *project(kinematics_of(arm), branch_references(branches, tips_mm, firsts), tips_mm), tips_mm
+        )
 
     return solve
 
 
 def _course_by_course(targets: Targets, solve_course: Callable[[FloatArray], Solutions]) -> Solutions:
     found = [solve_course(course) for course in np.split(targets.tips_mm, targets.firsts[1:])]
-    return Solutions(*(np.concatenate([getattr(each, name) for each in found])
-                       for name in ("postures", "converged", "iterations", "error_mm")))
+    return Solutions(
+        *(
+            np.concatenate([getattr(each, name) for each in found])
+            for name in ("postures", "converged", "iterations", "error_mm")
+        )
+    )
 
 
-def _solutions(arm: Arm, postures: FloatArray, solved: BoolArray, tips_mm: FloatArray) -> Solutions:
-    """Of methods that do not iterate; errors are NaN where there is no posture at all."""
-    error: FloatArray = np.linalg.norm(kinematics_of(arm).tip_mm(postures) - tips_mm, axis=1)
-    return Solutions(postures, solved, np.zeros(len(postures), dtype=np.int64), error)
+def _solutions(arm: Arm, configurations: FloatArray, solved: BoolArray, tips_mm: FloatArray) -> Solutions:
+    """Of methods that do not iterate; errors are NaN where there is no configuration at all."""
+    error: FloatArray = np.linalg.norm(kinematics_of(arm).tip_mm(configurations) - tips_mm, axis=1)
+    return Solutions(configurations, solved, np.zeros(len(configurations), dtype=np.int64), error)
 
 
 def _within_mm(settings: dls.DlsSettings) -> float:
@@ -94,14 +104,49 @@ def _within_mm(settings: dls.DlsSettings) -> float:
 
 
 METHODS = (
-    ComparedMethod("dls", "DLS documented", _by_dls(dls.DOCUMENTED), _within_mm(dls.DOCUMENTED),
-                   f"not within tolerance after {dls.DOCUMENTED.most_iterations} iterations", True, None),
-    ComparedMethod("dls-drawing", "DLS drawing", _by_dls(dls.FOR_DRAWING), _within_mm(dls.FOR_DRAWING),
-                   f"not within tolerance after {dls.FOR_DRAWING.most_iterations} iterations", True, Method.DLS),
-    ComparedMethod("nlp", "NLP per target", _by_nlp, nlp.TOLERANCE_MM,
-                   "found no posture within the joint limits from where it began", True, Method.NLP),
-    ComparedMethod("closed-form", "closed form", _by_closed_form, _ROUNDING_MM,
-                   "the branch that the arm draws with does not get there", False, Method.CLOSED_FORM),
-    ComparedMethod("path", "path optimiser", _by_path, _ROUNDING_MM,
-                   "no posture found near that of the field", False, Method.PATH),
+    ComparedMethod(
+        "dls",
+        "DLS documented",
+        _by_dls(dls.DOCUMENTED),
+        _within_mm(dls.DOCUMENTED),
+        f"not within tolerance after {dls.DOCUMENTED.most_iterations} iterations",
+        True,
+        None,
+    ),
+    ComparedMethod(
+        "dls-drawing",
+        "DLS drawing",
+        _by_dls(dls.FOR_DRAWING),
+        _within_mm(dls.FOR_DRAWING),
+        f"not within tolerance after {dls.FOR_DRAWING.most_iterations} iterations",
+        True,
+        Method.DLS,
+    ),
+    ComparedMethod(
+        "nlp",
+        "NLP per target",
+        _by_nlp,
+        nlp.TOLERANCE_MM,
+        "found no configuration within the joint limits from where it began",
+        True,
+        Method.NLP,
+    ),
+    ComparedMethod(
+        "closed-form",
+        "closed form",
+        _by_closed_form,
+        _ROUNDING_MM,
+        "the branch that the arm draws with does not get there",
+        False,
+        Method.CLOSED_FORM,
+    ),
+    ComparedMethod(
+        "path",
+        "path optimiser",
+        _by_path,
+        _ROUNDING_MM,
+        "no configuration found near that of the map",
+        False,
+        Method.PATH,
+    ),
 )

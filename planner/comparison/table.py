@@ -110,8 +110,10 @@ def convergence_lines(arm: Arm, found: Convergence) -> Iterator[str]:
 
 def _iteration(arm: Arm, index: int, state: DlsStep, decimals: int) -> str:
     along, across = float(np.hypot(*state.error_mm[:2])), abs(float(state.error_mm[2]))
-    joints = "".join(f"{round(value, decimals) + 0.0:>{decimals + 6}.{decimals}f}"
-                     for value in arm.to_file_units(state.joints).tolist())
+    joints = "".join(
+        f"{round(value, decimals) + 0.0:>{decimals + 6}.{decimals}f}"
+        for value in arm.to_file_units(state.joints).tolist()
+    )
     lengths = "".join(f"{round(value, 3) + 0.0:>9.3f}" for value in (*state.tip_mm.tolist(), along, across))
     return f"{index:>2}{joints}{lengths}"
 
@@ -122,23 +124,28 @@ def _misprints(arm: Arm, found: Convergence) -> Iterator[str]:
     for (index, column, place), correct in ERRATA.items():
         if found.printed and column == "angles_deg":
             printed = found.printed[index].angles_deg[place]
-            yield (f"  iteration {index}, {arm.joints[place].name}: {printed:.4f} printed,"
-                   f" {correct:.4f} by their equations")
+            yield (
+                f"  iteration {index}, {arm.joints[place].name}: {printed:.4f} printed,"
+                f" {correct:.4f} by their equations"
+            )
 
 
 def _heading(comparison: Comparison) -> str:
     targets = comparison.targets
     count = len(targets.tips_mm)
-    what = {TargetKind.SINGLE: f"{counted(count, 'single target')}",
-            TargetKind.RANDOM: f"{counted(count, 'random target')} on the paper, each from the start",
-            TargetKind.DRAWING: f"{counted(count, 'target')} along {counted(len(targets.firsts), 'stroke')}",
-            }[targets.kind]
+    what = {
+        TargetKind.SINGLE: f"{counted(count, 'single target')}",
+        TargetKind.RANDOM: f"{counted(count, 'random target')} on the paper, each from the start",
+        TargetKind.DRAWING: f"{counted(count, 'target')} along {counted(len(targets.firsts), 'stroke')}",
+    }[targets.kind]
     return f"{comparison.arm.name}: {what}"
 
 
 def _notes(comparison: Comparison) -> Iterator[str]:
-    yield (f"DLS documented stops within {_tolerances()}, DLS drawing within {FOR_DRAWING.tolerance_xy_mm:g} mm;"
-           " neither knows of limits. Cold and warm are processor time.")
+    yield (
+        f"DLS documented stops within {_tolerances()}, DLS drawing within {FOR_DRAWING.tolerance_xy_mm:g} mm;"
+        " neither knows of limits. Cold and warm are processor time."
+    )
     if comparison.targets.kind is TargetKind.RANDOM:
         yield "The same points again: one after the other, in the opposite order."
     if comparison.targets.kind is TargetKind.DRAWING:

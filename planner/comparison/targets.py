@@ -9,13 +9,13 @@ from enum import StrEnum
 import numpy as np
 
 from planner.arms.arm import Arm, PenHold
-from planner.arms.kinematics import kinematics_of
-from planner.arms.posture_tests import usable_postures
-from planner.arms.projection import project
 from planner.arrays import FloatArray, IntArray
 from planner.errors import PlanError
-from planner.inverse_kinematics.stroke_postures import TARGET_SPACING_MM
+from planner.inverse_kinematics.stroke_configurations import TARGET_SPACING_MM
+from planner.kinematics.chain import kinematics_of
+from planner.kinematics.projection import project
 from planner.ragged import starts_of
+from planner.redundancy.configuration_tests import usable_configurations
 
 _DRAWN, _MOST_DRAWS = 4096, 100
 
@@ -31,8 +31,8 @@ class TargetKind(StrEnum):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Targets:
-    """Tips (n, 3), arm mm, in courses that begin at firsts (n_courses,): a method that goes from posture to posture
-    begins each course from the start. along_mm: (n,) the way along the course, zero where there is none.
+    """Tips (n, 3), arm mm, in courses that begin at firsts (n_courses,): a method that goes from configuration to
+    configuration begins each course from the start. along_mm: (n,) the way along the course, zero where there is none.
     strokes: those (n, 2) of a drawing."""
 
     kind: TargetKind
@@ -43,7 +43,7 @@ class Targets:
 
     def backwards(self) -> Targets:
         """Everything in the opposite order: the last course first, from its end. Random targets become one course, so
-        that each is met from another posture than the start."""
+        that each is met from another configuration than the start."""
         firsts = len(self.tips_mm) - np.append(self.firsts, len(self.tips_mm))[:0:-1]
         if self.kind is TargetKind.RANDOM:
             firsts = firsts[:1]
@@ -60,26 +60,28 @@ def single_targets(tips_mm: FloatArray) -> Targets:
 
 
 def random_targets(arm: Arm, count: int, seed: int) -> Targets:
-    """Places of the paper in front of the arm, each reached by a usable posture that was drawn at random: within
+    """Places of the paper in front of the arm, each reached by a usable configuration that was drawn at random: within
     limits, clear of singularities, links above the paper. Errors: PlanError where hardly any is found."""
     random = np.random.default_rng(seed)
     kinematics = kinematics_of(arm)
-    low, high = kinematics.free_of(arm.minimum), kinematics.free_of(arm.maximum)
+    low, high = kinematics.independent_of(arm.minimum), kinematics.independent_of(arm.maximum)
     found = np.empty((0, 3))
     for _ in range(_MOST_DRAWS):
-        postures = random.uniform(low, high, (_DRAWN, kinematics.n_free))
+        configurations = random.uniform(low, high, (_DRAWN, kinematics.n_independent))
         if arm.pen.hold is PenHold.TOOL_AXIS:
-            postures = postures[kinematics.tool_axis(postures)[:, 2] < 0]
-        tips = kinematics.tip_mm(postures)
+            configurations = configurations[kinematics.tool_axis(configurations)[:, 2] < 0]
+        tips = kinematics.tip_mm(configurations)
         tips[:, 2] = 0.0
         in_front = (tips[:, 0] >= 0) & (np.hypot(tips[:, 0], tips[:, 1]) >= arm.workspace.inner_radius_mm)
-        postures, tips = postures[in_front], tips[in_front]
-        postures, exact = project(kinematics, postures, tips)
-        found = np.concatenate((found, tips[exact][usable_postures(kinematics, postures[exact])]))
+        configurations, tips = configurations[in_front], tips[in_front]
+        configurations, exact = project(kinematics, configurations, tips)
+        found = np.concatenate((found, tips[exact][usable_configurations(kinematics, configurations[exact])]))
         if len(found) >= count:
             return Targets(TargetKind.RANDOM, found[:count], np.arange(count), np.zeros(count))
-    raise PlanError(f"arm {arm.name}: of {_MOST_DRAWS * _DRAWN} random postures only {len(found)} put the pen on the"
-                    " paper within the joint limits")
+    raise PlanError(
+        f"arm {arm.name}: of {_MOST_DRAWS * _DRAWN} random configurations only {len(found)} put the pen on the"
+        " paper within the joint limits"
+    )
 
 
 def targets_along(strokes: Sequence[FloatArray]) -> Targets:
@@ -87,8 +89,9 @@ def targets_along(strokes: Sequence[FloatArray]) -> Targets:
     tips, along = zip(*map(_stations, strokes), strict=True)
     firsts = starts_of(np.array([len(course) for course in tips]))[:-1]
     joined = np.concatenate(tips)
-    return Targets(TargetKind.DRAWING, np.column_stack((joined, np.zeros(len(joined)))), firsts,
-                   np.concatenate(along), strokes)
+    return Targets(
+        TargetKind.DRAWING, np.column_stack((joined, np.zeros(len(joined)))), firsts, np.concatenate(along), strokes
+    )
 
 
 def _stations(stroke: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -10,8 +10,9 @@ Cubic = tuple[float, float, float, float, float, float]
 _LARGEST_ANGLE_RAD = math.radians(30.0)
 
 
-def arc_to_cubics(x0: float, y0: float, rx: float, ry: float, rotation_deg: float,
-                  large: bool, sweep: bool, x1: float, y1: float) -> list[Cubic]:
+def arc_to_cubics(
+    x0: float, y0: float, rx: float, ry: float, rotation_deg: float, large: bool, sweep: bool, x1: float, y1: float
+) -> list[Cubic]:
     """The path command `A rx ry rotation large sweep x1 y1` from (x0, y0): control points and end of each cubic.
 
     Empty where both ends coincide; one straight cubic where a radius is zero; radii that are too
@@ -51,8 +52,16 @@ def arc_to_cubics(x0: float, y0: float, rx: float, ry: float, rotation_deg: floa
     return cubics
 
 
-def ellipse_cubics(center_x: float, center_y: float, rx: float, ry: float, start_rad: float, turn_rad: float,
-                   cosine: float = 1.0, sine: float = 0.0) -> list[Cubic]:
+def ellipse_cubics(
+    center_x: float,
+    center_y: float,
+    rx: float,
+    ry: float,
+    start_rad: float,
+    turn_rad: float,
+    cosine: float = 1.0,
+    sine: float = 0.0,
+) -> list[Cubic]:
     """Cubics along an ellipse whose axes are turned by (cosine, sine), from the parameter angle `start_rad` on."""
     count = max(1, math.ceil(abs(turn_rad) / _LARGEST_ANGLE_RAD - 1e-9))
     step = turn_rad / count

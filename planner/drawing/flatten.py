@@ -36,8 +36,10 @@ def flatten_all(outlines: Sequence[Outline], user_to_arm: FloatArray, tolerance_
     bend[bend < 1e-12 * np.abs(control).max(axis=(1, 2))] = 0.0
     n_chords = np.maximum(1.0, np.ceil(np.sqrt(0.75 * bend / tolerance_mm)))
     if not n_chords.sum() <= POINT_LIMIT:
-        raise PlanError(f"at this size and tolerance the drawing comes to more than {POINT_LIMIT} points; make it"
-                        " smaller (--fit), or the --tolerance larger")
+        raise PlanError(
+            f"at this size and tolerance the drawing comes to more than {POINT_LIMIT} points; make it"
+            " smaller (--fit), or the --tolerance larger"
+        )
     n_chords = n_chords.astype(np.int64)
     curve = np.repeat(np.arange(len(control)), n_chords)
     chord = np.arange(len(curve)) - np.repeat(np.cumsum(n_chords) - n_chords, n_chords) + 1
@@ -85,6 +87,10 @@ def _transformed(outlines: Sequence[Outline], affine: FloatArray) -> FloatArray:
 def _at(control: FloatArray, t: FloatArray) -> FloatArray:
     """Points (n, 2) of cubics (n, 4, 2) at parameters (n, 1), or (n, 2) for each coordinate its own."""
     s = 1.0 - t
-    point: FloatArray = (s * s * s * control[:, 0] + 3.0 * s * s * t * control[:, 1]
-                         + 3.0 * s * t * t * control[:, 2] + t * t * t * control[:, 3])
+    point: FloatArray = (
+        s * s * s * control[:, 0]
+        + 3.0 * s * s * t * control[:, 1]
+        + 3.0 * s * t * t * control[:, 2]
+        + t * t * t * control[:, 3]
+    )
     return point

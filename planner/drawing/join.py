@@ -27,8 +27,9 @@ def join_strokes(strokes: Sequence[FloatArray], tolerance_mm: float = 0.05) -> l
     if len(open_strokes) > 1:
         points = np.array([(stroke[0], stroke[-1]) for stroke in strokes]).reshape(-1, 2)
         outward = np.array([_outward(stroke) for stroke in strokes]).reshape(-1, 2)
-        _match(partner, np.stack([2 * open_strokes, 2 * open_strokes + 1], axis=1).ravel(),
-               points, outward, tolerance_mm)
+        _match(
+            partner, np.stack([2 * open_strokes, 2 * open_strokes + 1], axis=1).ravel(), points, outward, tolerance_mm
+        )
     joined = []
     is_used = np.zeros(len(strokes), dtype=np.bool_)
     for index, stroke in enumerate(strokes):
@@ -80,8 +81,9 @@ def _match(partner: IntArray, ends: IntArray, points: FloatArray, outward: Float
             free = free[partner[free] < 0]
 
 
-def _coincident(free: IntArray, points: FloatArray, outward: FloatArray,
-                tolerance_mm: float) -> tuple[IntArray, IntArray]:
+def _coincident(
+    free: IntArray, points: FloatArray, outward: FloatArray, tolerance_mm: float
+) -> tuple[IntArray, IntArray]:
     """Pairs of ends in one place, for each end those that lead most nearly straight on."""
     cells = np.round(points[free] / (_EXACT_SHARE * tolerance_mm))
     place = np.unique(cells, axis=0, return_inverse=True)[1].ravel()

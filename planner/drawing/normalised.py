@@ -98,8 +98,11 @@ class _Reader:
         to_user = parent.to_user
         if "transform" in attributes:
             to_user = compose(to_user, _matrix(attributes["transform"]))
-        is_visible = (parent.is_visible and float(attributes.get("opacity", 1.0)) > 0.0
-                      and attributes.get("visibility", "visible") == "visible")
+        is_visible = (
+            parent.is_visible
+            and float(attributes.get("opacity", 1.0)) > 0.0
+            and attributes.get("visibility", "visible") == "visible"
+        )
         clip = _URL.fullmatch(attributes.get("clip-path", ""))
         user_to_clip = _inverse(to_user) if clip else parent.user_to_clip
         group = _Group(to_user, is_visible, clip[1] if clip else None, user_to_clip, _NOTHING)
@@ -165,8 +168,10 @@ class _Reader:
         """Count curves and subpaths before they take memory."""
         self._n_subpaths += data.count("M")
         self._n_curves += sum(map(data.count, "LCQZ"))
-        for count, limit, what in ((self._n_subpaths, SUBPATH_LIMIT, "subpaths"),
-                                   (self._n_curves, CURVE_LIMIT, "lines and curves")):
+        for count, limit, what in (
+            (self._n_subpaths, SUBPATH_LIMIT, "subpaths"),
+            (self._n_curves, CURVE_LIMIT, "lines and curves"),
+        ):
             if count > limit:
                 raise DrawingError(self._source, f"more than {limit} {what} (split it into several drawings)")
 
@@ -187,8 +192,12 @@ def _contains(clip: Box | None, box: Box) -> bool:
     if clip is None:
         return False
     slack = 1e-6 * max(clip[2] - clip[0], clip[3] - clip[1])
-    return (clip[0] - slack <= box[0] and clip[1] - slack <= box[1]
-            and box[2] <= clip[2] + slack and box[3] <= clip[3] + slack)
+    return (
+        clip[0] - slack <= box[0]
+        and clip[1] - slack <= box[1]
+        and box[2] <= clip[2] + slack
+        and box[3] <= clip[3] + slack
+    )
 
 
 def _box(points: FloatArray) -> Box:
@@ -215,7 +224,7 @@ def _union(one: Box, other: Box) -> Box:
 
 def _matrix(text: str) -> FloatArray:
     """`matrix(a b c d e f)` as [[a, c, e], [b, d, f]]."""
-    values = text[text.index("(") + 1:text.index(")")].split()
+    values = text[text.index("(") + 1 : text.index(")")].split()
     return np.array([float(value) for value in values]).reshape(3, 2).T
 
 
@@ -268,8 +277,18 @@ def _subpaths(data: str) -> list[FloatArray]:
                 flat.extend((x, y, x1, y1, x2, y2, end_x, end_y))
             else:
                 end_x, end_y = x2, y2
-                flat.extend((x, y, x + (x1 - x) / 1.5, y + (y1 - y) / 1.5,
-                             end_x + (x1 - end_x) / 1.5, end_y + (y1 - end_y) / 1.5, end_x, end_y))
+                flat.extend(
+                    (
+                        x,
+                        y,
+                        x + (x1 - x) / 1.5,
+                        y + (y1 - y) / 1.5,
+                        end_x + (x1 - end_x) / 1.5,
+                        end_y + (y1 - end_y) / 1.5,
+                        end_x,
+                        end_y,
+                    )
+                )
         is_line.append(letter == "L")
         x, y = end_x, end_y
     finish()

@@ -43,7 +43,7 @@ class Metric:
             norm: FloatArray = difference.max(axis=-1)
         else:
             norm = np.sqrt(np.sum(difference * difference, axis=-1))
-        return norm if self.exponent == 1.0 else norm ** self.exponent
+        return norm if self.exponent == 1.0 else norm**self.exponent
 
 
 def _unchanged(points: FloatArray) -> FloatArray:
@@ -91,8 +91,10 @@ class _Candidates:
 
     def __init__(self, strokes: Sequence[FloatArray], metric: Metric) -> None:
         self.is_closed = np.array([is_closed(stroke) for stroke in strokes], dtype=np.bool_)
-        pieces = [stroke[:-1] if closed else stroke[[0, -1]]
-                  for stroke, closed in zip(strokes, self.is_closed.tolist(), strict=True)]
+        pieces = [
+            stroke[:-1] if closed else stroke[[0, -1]]
+            for stroke, closed in zip(strokes, self.is_closed.tolist(), strict=True)
+        ]
         counts = np.array([len(piece) for piece in pieces])
         self.vectors = np.asarray(metric.embed(np.concatenate(pieces)), dtype=np.float64)
         self.owner: IntArray = np.repeat(np.arange(len(strokes)), counts)
@@ -136,8 +138,9 @@ def _greedy(candidates: _Candidates, start: FloatArray, p: float) -> tuple[IntAr
     return tour, entries, exits
 
 
-def _rotate_closed(candidates: _Candidates, start: FloatArray, tour: IntArray, entries: IntArray, exits: IntArray,
-                   metric: Metric) -> bool:
+def _rotate_closed(
+    candidates: _Candidates, start: FloatArray, tour: IntArray, entries: IntArray, exits: IntArray, metric: Metric
+) -> bool:
     """Begin each closed stroke where the way in and out is shortest; whether that changed anything."""
     is_changed = False
     for position, index in enumerate(tour.tolist()):
@@ -162,5 +165,5 @@ def _begun_at(stroke: FloatArray, candidate: int) -> FloatArray:
         return stroke
     if not is_closed(stroke):
         return stroke[::-1]
-    begun: FloatArray = np.concatenate([stroke[candidate:-1], stroke[:candidate + 1]])
+    begun: FloatArray = np.concatenate([stroke[candidate:-1], stroke[: candidate + 1]])
     return begun

@@ -13,9 +13,21 @@ _COMMAND = re.compile(r"[\s,]*([MmLlHhVvCcSsQqTtAaZz])")
 _FOREIGN = re.compile(r"[^MmLlHhVvCcSsQqTtAaZz0-9eE+\-.,\s]")
 # An integer part of ten digits or more, or a decimal exponent of nine or more.
 _HUGE = re.compile(r"(?<![\d.])0*[1-9]\d{9}|[eE]\+?0*(?:9|[1-9]\d)")
-_ARGUMENTS = {letter: re.compile(arguments) for letter, arguments in {
-    "M": 2 * _NUMBER, "L": 2 * _NUMBER, "H": _NUMBER, "V": _NUMBER, "C": 6 * _NUMBER, "S": 4 * _NUMBER,
-    "Q": 4 * _NUMBER, "T": 2 * _NUMBER, "A": 3 * _NUMBER + 2 * _FLAG + 2 * _NUMBER, "Z": ""}.items()}
+_ARGUMENTS = {
+    letter: re.compile(arguments)
+    for letter, arguments in {
+        "M": 2 * _NUMBER,
+        "L": 2 * _NUMBER,
+        "H": _NUMBER,
+        "V": _NUMBER,
+        "C": 6 * _NUMBER,
+        "S": 4 * _NUMBER,
+        "Q": 4 * _NUMBER,
+        "T": 2 * _NUMBER,
+        "A": 3 * _NUMBER + 2 * _FLAG + 2 * _NUMBER,
+        "Z": "",
+    }.items()
+}
 
 
 def has_unusable_numbers(data: str) -> bool:

@@ -23,8 +23,10 @@ PATH_LIMIT_BYTES = 64 << 20
 """Of path data with its arcs as cubics: an arc of twenty letters may take twelve times as many."""
 
 # A PNG of one pixel.
-_PIXEL = bytes.fromhex("89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000"
-                       "000d4944415478da636460f85f0f0002870180eb47ba920000000049454e44ae426082")
+_PIXEL = bytes.fromhex(
+    "89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000"
+    "000d4944415478da636460f85f0f0002870180eb47ba920000000049454e44ae426082"
+)
 _PLACEHOLDER_KINDS = ("text", "image", "foreignObject")
 # The kind follows the end of the image data, where image readers do not look; its own letters tell the three apart.
 PLACEHOLDERS = {base64.b64encode(_PIXEL + kind.encode()).decode(): kind for kind in _PLACEHOLDER_KINDS}
@@ -32,10 +34,24 @@ _HREFS = {kind: "data:image/png;base64," + data for data, kind in PLACEHOLDERS.i
 
 _DROPPED = frozenset({"script", "metadata", "namedview", "animate", "animateTransform", "animateMotion", "set"})
 _KEPT_PREFIXES = frozenset({"xml", "xmlns", "xlink"})
-_TEXT_ATTRIBUTES = frozenset({"id", "class", "style", "display", "visibility", "opacity", "systemLanguage",
-                              "requiredFeatures", "requiredExtensions"})
-_GEOMETRY = {"circle": ("cx", "cy", "r"), "ellipse": ("cx", "cy", "rx", "ry"),
-             "rect": ("x", "y", "width", "height", "rx", "ry")}
+_TEXT_ATTRIBUTES = frozenset(
+    {
+        "id",
+        "class",
+        "style",
+        "display",
+        "visibility",
+        "opacity",
+        "systemLanguage",
+        "requiredFeatures",
+        "requiredExtensions",
+    }
+)
+_GEOMETRY = {
+    "circle": ("cx", "cy", "r"),
+    "ellipse": ("cx", "cy", "rx", "ry"),
+    "rect": ("x", "y", "width", "height", "rx", "ry"),
+}
 # Where a style sheet may tell a circle from a path, or set a radius, shapes stay as they are.
 _SHAPE_SELECTORS = re.compile(r"\b(?:path|circle|ellipse|rect)\b|\b(?:cx|cy|rx|ry|r)\s*:|\[|:nth|-of-type")
 _LENGTH = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?)\s*(px|mm|cm|in|pt|pc)?\s*")
@@ -43,8 +59,9 @@ _PX_PER_UNIT = {None: 1.0, "px": 1.0, "mm": 96.0 / 25.4, "cm": 96.0 / 2.54, "in"
 # Units that CSS has and the normaliser has not: it would drop the element without a word.
 _UNKNOWN_UNIT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*(q|rem)\s*", re.IGNORECASE)
 _LENGTH_ATTRIBUTES = ("x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "x1", "y1", "x2", "y2", "stroke-width")
-_ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;",
-                          "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"})
+_ESCAPES = str.maketrans(
+    {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+)
 
 
 def rewrite(data: bytes, survey: Survey, source: str) -> tuple[bytes, Counter[str]]:
@@ -86,8 +103,9 @@ class _Rewriter:
         parent = self._tags[-1] if self._tags else ""
         kept = _without_outside(attributes)
         self._rewrite_units(kept)
-        if tag in _DROPPED or (tag == "use" and parent == "clipPath"
-                               and href_of(kept).removeprefix("#") not in self._shape_ids):
+        if tag in _DROPPED or (
+            tag == "use" and parent == "clipPath" and href_of(kept).removeprefix("#") not in self._shape_ids
+        ):
             self._omitted_depth = 1
             return
         if tag == "text":
@@ -105,8 +123,7 @@ class _Rewriter:
             return
         if tag == "image":
             has_picture = bool(href_of(attributes))
-            kept = {key: value for key, value in kept.items()
-                    if local_name(key) not in ("href", "preserveAspectRatio")}
+            kept = {key: value for key, value in kept.items() if local_name(key) not in ("href", "preserveAspectRatio")}
             if has_picture:
                 kept["href"] = _HREFS["image"]
         elif tag == "path":
@@ -161,8 +178,11 @@ class _Rewriter:
         for part in parts:
             self._path_bytes += len(part)
             if self._path_bytes > PATH_LIMIT_BYTES:
-                raise DrawingError(self._source, f"its paths, with arcs as curves, are larger than the limit of"
-                                                 f" {PATH_LIMIT_BYTES >> 20} MB (split it into several drawings)")
+                raise DrawingError(
+                    self._source,
+                    f"its paths, with arcs as curves, are larger than the limit of"
+                    f" {PATH_LIMIT_BYTES >> 20} MB (split it into several drawings)",
+                )
             yield part
 
     def _rewrite_shape(self, name: str, tag: str, attributes: dict[str, str]) -> str:
@@ -181,9 +201,12 @@ class _Rewriter:
 
 def _without_outside(attributes: dict[str, str]) -> dict[str, str]:
     """The attributes that mean something to the normaliser; references only to the document itself."""
-    return {key: value for key, value in attributes.items()
-            if (":" not in key or key.partition(":")[0] in _KEPT_PREFIXES)
-            and (local_name(key) != "href" or value.strip().startswith("#"))}
+    return {
+        key: value
+        for key, value in attributes.items()
+        if (":" not in key or key.partition(":")[0] in _KEPT_PREFIXES)
+        and (local_name(key) != "href" or value.strip().startswith("#"))
+    }
 
 
 def _element(name: str, attributes: dict[str, str]) -> str:

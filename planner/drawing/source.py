@@ -18,9 +18,16 @@ SIZE_LIMIT_BYTES = 32 * 1024 * 1024
 DEPTH_LIMIT = 500
 ELEMENT_LIMIT = 250_000
 _OTHER_FORMATS = {
-    b"\x89PNG": "a picture (PNG)", b"\xff\xd8\xff": "a picture (JPEG)", b"GIF8": "a picture (GIF)",
-    b"RIFF": "a picture (WebP)", b"II*\0": "a picture (TIFF)", b"MM\0*": "a picture (TIFF)", b"BM": "a picture (BMP)",
-    b"%PDF": "a PDF", b"%!PS": "PostScript"}
+    b"\x89PNG": "a picture (PNG)",
+    b"\xff\xd8\xff": "a picture (JPEG)",
+    b"GIF8": "a picture (GIF)",
+    b"RIFF": "a picture (WebP)",
+    b"II*\0": "a picture (TIFF)",
+    b"MM\0*": "a picture (TIFF)",
+    b"BM": "a picture (BMP)",
+    b"%PDF": "a PDF",
+    b"%!PS": "PostScript",
+}
 """What files of other kinds begin with: none of this begins an XML document."""
 SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 SHAPES = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
@@ -87,8 +94,9 @@ def survey(data: bytes, source: str) -> Survey:
     surveyor = _Surveyor(source)
     parse(data, surveyor.parser, source)
     surveyor.check_expansion()
-    return Survey("".join(surveyor.css), surveyor.has_markers, surveyor.n_shapes,
-                  frozenset(surveyor.shape_ids), surveyor.root)
+    return Survey(
+        "".join(surveyor.css), surveyor.has_markers, surveyor.n_shapes, frozenset(surveyor.shape_ids), surveyor.root
+    )
 
 
 def parse(data: bytes, parser: expat.XMLParserType, source: str) -> None:
@@ -137,11 +145,13 @@ class _Surveyor:
 
     def _doctype(self, name: str, system: str | None, public: str | None, has_internal_subset: bool) -> None:
         if has_internal_subset:
-            raise DrawingError(self.source, "declares a document type of its own, which is not accepted"
-                                            " (save it as plain SVG)")
+            raise DrawingError(
+                self.source, "declares a document type of its own, which is not accepted (save it as plain SVG)"
+            )
         if system and not (public or "").startswith("-//W3C//DTD SVG"):
-            raise DrawingError(self.source, "refers to a foreign document type, which is not accepted"
-                                            " (save it as plain SVG)")
+            raise DrawingError(
+                self.source, "refers to a foreign document type, which is not accepted (save it as plain SVG)"
+            )
 
     def _entity(self, *_: object) -> None:
         raise DrawingError(self.source, "declares entities, which are not accepted (save it as plain SVG)")

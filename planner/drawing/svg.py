@@ -69,8 +69,10 @@ def _page(root: Mapping[str, str], original: Mapping[str, str]) -> tuple[FloatAr
     left, top, width, height = (float(value) for value in root["viewBox"].split())
     sizes = np.array([*size, width, height])
     if not ((sizes >= _SMALLEST_PAGE) & (sizes <= _LARGEST_PAGE)).all() or max(abs(left), abs(top)) > _LARGEST_PAGE:
-        raise ValueError(f"its width, height or viewBox is beyond {_SMALLEST_PAGE:g} to {_LARGEST_PAGE:g}"
-                         " (give it the size of a page)")
+        raise ValueError(
+            f"its width, height or viewBox is beyond {_SMALLEST_PAGE:g} to {_LARGEST_PAGE:g}"
+            " (give it the size of a page)"
+        )
     if "viewBox" in original and ("width" in original) != ("height" in original):
         known = 0 if "width" in original else 1
         size[1 - known] = size[known] * (width, height)[1 - known] / (width, height)[known]

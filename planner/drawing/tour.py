@@ -31,8 +31,9 @@ class Norm(Protocol):
     def distance(self, one: FloatArray, other: FloatArray) -> FloatArray: ...
 
 
-def improve(start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray,
-            norm: Norm) -> tuple[IntArray, BoolArray]:
+def improve(
+    start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, norm: Norm
+) -> tuple[IntArray, BoolArray]:
     """A tour no longer than `tour`, and which strokes it runs the other way.
 
     start: (k,); entries, exits: (n_strokes, k), where each stroke is entered and left now; tour: (n_strokes,).
@@ -126,8 +127,15 @@ class _Search:
         chosen = np.flatnonzero(gain > self.least_gain)
         chosen = chosen[np.lexsort((chosen, -gain[chosen]))]
         # Moves are remembered by the nodes at their borders: earlier moves of this round shift positions.
-        borders = np.stack([self.tour[first[chosen] - 1], self.tour[first[chosen]], self.tour[last[chosen]],
-                            self._after(last[chosen])], axis=1)
+        borders = np.stack(
+            [
+                self.tour[first[chosen] - 1],
+                self.tour[first[chosen]],
+                self.tour[last[chosen]],
+                self._after(last[chosen]),
+            ],
+            axis=1,
+        )
         n_moves = 0
         for before, head, tail, after in borders.tolist():
             n_moves += self._turn_round(before, head, tail, after)
@@ -137,8 +145,9 @@ class _Search:
         """Apply a 2-opt move if its two links still stand, in either direction of the tour."""
         i, j = int(self.position[head >> 1]), int(self.position[tail >> 1])
         if self.tour[i] == head and self.tour[j] == tail and i <= j:
-            stands = (self.tour[i - 1] == before
-                      and (j == self.n if after < 0 else j < self.n and self.tour[j + 1] == after))
+            stands = self.tour[i - 1] == before and (
+                j == self.n if after < 0 else j < self.n and self.tour[j + 1] == after
+            )
         elif self.tour[i] == head ^ 1 and self.tour[j] == tail ^ 1 and j <= i and after >= 0:
             # Turned round as a whole meanwhile: the same links, met the other way.
             stands = self.tour[j - 1] == after ^ 1 and i < self.n and self.tour[i + 1] == before ^ 1
@@ -151,8 +160,8 @@ class _Search:
         return True
 
     def _reverse(self, i: int, j: int) -> None:
-        self.tour[i:j + 1] = self.tour[i:j + 1][::-1] ^ 1
-        self.position[self.tour[i:j + 1] >> 1] = np.arange(i, j + 1)
+        self.tour[i : j + 1] = self.tour[i : j + 1][::-1] ^ 1
+        self.position[self.tour[i : j + 1] >> 1] = np.arange(i, j + 1)
         self.work += j + 1 - i
 
     # Or-opt: move a short segment between two other neighbours, either way round.
@@ -163,16 +172,26 @@ class _Search:
         gain, first, last, gap, turned = (np.concatenate(column) for column in zip(*moves, strict=True))
         chosen = np.flatnonzero(gain > self.least_gain)
         chosen = chosen[np.lexsort((chosen, -gain[chosen]))]
-        rows = np.stack([self.tour[first[chosen] - 1], self.tour[first[chosen]], self.tour[last[chosen]],
-                         self._after(last[chosen]), self.tour[gap[chosen]], self._after(gap[chosen]),
-                         turned[chosen]], axis=1)
+        rows = np.stack(
+            [
+                self.tour[first[chosen] - 1],
+                self.tour[first[chosen]],
+                self.tour[last[chosen]],
+                self._after(last[chosen]),
+                self.tour[gap[chosen]],
+                self._after(gap[chosen]),
+                turned[chosen],
+            ],
+            axis=1,
+        )
         n_moves = 0
         for row in rows.tolist():
             n_moves += self._move_segment(*row)
         return n_moves
 
-    def _or_opt_candidates(self, length: int, link: FloatArray, a: IntArray, b: IntArray
-                           ) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray]:
+    def _or_opt_candidates(
+        self, length: int, link: FloatArray, a: IntArray, b: IntArray
+    ) -> tuple[FloatArray, IntArray, IntArray, IntArray, IntArray]:
         """Gain, first and last position of the segment, the position after which it goes, and whether turned."""
         position_a, position_b = self.position[a // 2], self.position[b // 2]
         is_entry_a = self.tour[position_a] == a
@@ -190,12 +209,17 @@ class _Search:
         before, after = self.tour[first - 1] ^ 1, self._after(last)
         left, right = self.tour[gap] ^ 1, self._after(gap)
         inner, outer = np.where(turned, tail, head), np.where(turned, head, tail)
-        gain = (link[head] + link[tail] + link[left] - self._length(before, after)
-                - self._length(left, inner) - self._length(outer, right))
+        gain = (
+            link[head]
+            + link[tail]
+            + link[left]
+            - self._length(before, after)
+            - self._length(left, inner)
+            - self._length(outer, right)
+        )
         return gain, first, last, gap, turned.astype(np.int64)
 
-    def _move_segment(self, before: int, head: int, tail: int, after: int, left: int, right: int,
-                      turned: int) -> bool:
+    def _move_segment(self, before: int, head: int, tail: int, after: int, left: int, right: int, turned: int) -> bool:
         """Apply an Or-opt move if all three links still stand as they were."""
         i, j, gap = (int(self.position[node >> 1]) for node in (head, tail, left))
         ends = [(i - 1, before), (i, head), (j, tail), (gap, left)]
@@ -206,12 +230,12 @@ class _Search:
                 return False
         if j - i >= _LONGEST_SEGMENT or j < i or i - 1 <= gap <= j:
             return False
-        segment = self.tour[i:j + 1].copy()
+        segment = self.tour[i : j + 1].copy()
         if turned:
             segment = segment[::-1] ^ 1
         low, high = (gap + 1, j) if gap < i else (i, gap)
-        rest = self.tour[low:i] if gap < i else self.tour[j + 1:gap + 1]
-        self.tour[low:high + 1] = np.concatenate([segment, rest] if gap < i else [rest, segment])
-        self.position[self.tour[low:high + 1] >> 1] = np.arange(low, high + 1)
+        rest = self.tour[low:i] if gap < i else self.tour[j + 1 : gap + 1]
+        self.tour[low : high + 1] = np.concatenate([segment, rest] if gap < i else [rest, segment])
+        self.position[self.tour[low : high + 1] >> 1] = np.arange(low, high + 1)
         self.work += high + 1 - low
         return True

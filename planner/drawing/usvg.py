@@ -61,14 +61,17 @@ def normalise(svg: bytes, work_limit: int = WORK_LIMIT) -> bytes:
         except wasmtime.Trap as trap:
             raise NormalisationFailed(_trap_reason(trap)) from None
         except wasmtime.WasmtimeError:
-            raise NormalisationFailed("too large or too deeply nested to be normalised"
-                                      " (split it into several drawings)") from None
+            raise NormalisationFailed(
+                "too large or too deeply nested to be normalised (split it into several drawings)"
+            ) from None
         output = folder / "out.svg"
         if not output.is_file():
             raise NormalisationFailed(_complaint(folder / "stderr"))
         if output.stat().st_size > OUTPUT_LIMIT_BYTES:
-            raise NormalisationFailed("once its `use` elements and markers are drawn out it is larger than the limit"
-                                      f" of {OUTPUT_LIMIT_BYTES >> 20} MB (split it into several drawings)")
+            raise NormalisationFailed(
+                "once its `use` elements and markers are drawn out it is larger than the limit"
+                f" of {OUTPUT_LIMIT_BYTES >> 20} MB (split it into several drawings)"
+            )
         return output.read_bytes()
 
 
@@ -95,12 +98,16 @@ def _engine(on_disk_cache: bool) -> wasmtime.Engine:
 
 def _trap_reason(trap: wasmtime.Trap) -> str:
     if trap.trap_code == wasmtime.TrapCode.OUT_OF_FUEL:
-        return ("its markers, patterns, masks, clip paths and `use` elements multiply to more work than the limit"
-                " (simplify it, or convert them to plain paths)")
+        return (
+            "its markers, patterns, masks, clip paths and `use` elements multiply to more work than the limit"
+            " (simplify it, or convert them to plain paths)"
+        )
     if trap.trap_code == wasmtime.TrapCode.STACK_OVERFLOW:
         return "nested too deeply"
-    return ("too large for the memory of the SVG normaliser, or holds something that it cannot work through"
-            " (simplify it, or split it into several drawings)")
+    return (
+        "too large for the memory of the SVG normaliser, or holds something that it cannot work through"
+        " (simplify it, or split it into several drawings)"
+    )
 
 
 def _complaint(log: Path) -> str:

@@ -1,7 +1,7 @@
 """The documented damped least squares: one 6 x n step at a time, couplings overwritten after each.
 
 `dq = J^T (J J^T + lambda^2 I)^-1 e` with the geometric Jacobian J of all joints and e = [target - tip; 0],
-`q <- q + dq`, then every driven joint is set from its coupling (documents on the drawing arm, algorithm;
+`q <- q + dq`, then every mimic joint is set from its coupling (documents on the drawing arm, algorithm;
 Buss 2004). Lengths, those that joints slide by too, are in centimetres: lambda^2 = 50 weighs cm^2 against
 rad^2, and only so the documented iterations come out. Joint limits are not part of the method.
 """
@@ -16,10 +16,10 @@ import casadi
 import numpy as np
 
 from planner.arms.arm import Arm, JointKind, PenHold
-from planner.arms.compiled import CompiledFunction
-from planner.arms.kinematics import kinematics_of
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.result import Solutions
+from planner.kinematics.chain import kinematics_of
+from planner.kinematics.compiled import CompiledFunction
 
 MM_PER_CM = 10.0
 _LEVER_CM = 10.0
@@ -39,8 +39,11 @@ class DlsSettings:
 
     def met_by(self, state: DlsStep) -> bool:
         """Whether an iteration needs no further one."""
-        return (float(np.hypot(*state.error_mm[:2])) < self.tolerance_xy_mm
-                and abs(float(state.error_mm[2])) < self.tolerance_z_mm and state.tilt < self.tolerance_tilt)
+        return (
+            float(np.hypot(*state.error_mm[:2])) < self.tolerance_xy_mm
+            and abs(float(state.error_mm[2])) < self.tolerance_z_mm
+            and state.tilt < self.tolerance_tilt
+        )
 
 
 DOCUMENTED = DlsSettings()
@@ -63,22 +66,22 @@ def iterate(arm: Arm, start: FloatArray, target_mm: FloatArray, lambda_squared: 
     """Iterations without end from joints (n_joints,) towards a tip (3,): the caller decides when to stop."""
     step = _dls_step(arm)
     matrix, constant = arm.coupling_matrix
-    free = list(arm.free_joints)
+    independent = list(arm.independent_joints)
     joints, target = np.array(start, dtype=np.float64), np.asarray(target_mm, dtype=np.float64)
     damping = np.array([[lambda_squared]])
     while True:
         (error,), (tip,), (change,), ((tilt,),) = step(joints[None], target[None], damping)
         yield DlsStep(joints, tip, error, float(tilt), change)
-        joints = matrix @ (joints + change)[free] + constant
+        joints = matrix @ (joints + change)[independent] + constant
 
 
 def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, settings: DlsSettings) -> Solutions:
-    """Targets (n, 3) one after the other, each started from the posture of the one before.
+    """Targets (n, 3) one after the other, each started from the configuration of the one before.
 
     start: (n_joints,), which also holds the coupling.
     """
     n_targets = len(targets_mm)
-    postures = np.empty((n_targets, len(arm.free_joints)))
+    configurations = np.empty((n_targets, len(arm.independent_joints)))
     converged = np.zeros(n_targets, dtype=bool)
     iterations = np.zeros(n_targets, dtype=np.int64)
     error_mm = np.empty(n_targets)
@@ -91,8 +94,8 @@ def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, settings
                 break
         iterations[index] = count
         error_mm[index] = float(np.linalg.norm(state.error_mm))
-        postures[index] = joints[list(arm.free_joints)]
-    return Solutions(postures, converged, iterations, error_mm)
+        configurations[index] = joints[list(arm.independent_joints)]
+    return Solutions(configurations, converged, iterations, error_mm)
 
 
 @lru_cache(maxsize=16)
@@ -106,8 +109,9 @@ def _dls_step(arm: Arm) -> CompiledFunction:
     to_cm = casadi.diag(casadi.DM([1 / MM_PER_CM] * 3 + [_LEVER_CM if points else 1.0] * 3))
     turn = casadi.cross(axis, casadi.DM([0, 0, -1])) if points else casadi.SX.zeros(3)
     error = target - tip
-    joint_unit = casadi.diag(casadi.DM([MM_PER_CM if joint.kind is JointKind.PRISMATIC else 1.0
-                                        for joint in arm.joints]))
+    joint_unit = casadi.diag(
+        casadi.DM([MM_PER_CM if joint.kind is JointKind.PRISMATIC else 1.0 for joint in arm.joints])
+    )
     scaled = to_cm @ jacobian @ joint_unit
     damped = scaled @ scaled.T + damping * casadi.SX.eye(6)
     step = joint_unit @ scaled.T @ casadi.solve(damped, to_cm @ casadi.vertcat(error, turn))

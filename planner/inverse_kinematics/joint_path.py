@@ -1,4 +1,4 @@
-"""Joint positions along smooth paths: quintic splines through exact postures at every knot."""
+"""Joint positions along smooth paths: quintic splines through exact configurations at every knot."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from scipy.linalg import solve_banded
 
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.ragged import starts_of, within
-from planner.spline import evaluate, evaluate_at, first_controls, halved, weights
+from planner.spline import evaluate, evaluate_at, first_controls, subdivided, weights
 
 DEGREE = 5
 
@@ -29,9 +29,9 @@ class JointPaths:
         """(total cells, n_fractions, n_joints) positions or derivatives by sigma at fractions of every cell."""
         return evaluate(self.controls, first_controls(self.n_cells, DEGREE), fractions, DEGREE, derivative)
 
-    def halved(self) -> JointPaths:
+    def subdivided(self) -> JointPaths:
         """The same paths with every cell cut in two, sigma counting the new cells."""
-        return JointPaths(2 * self.n_cells, halved(self.controls, self.n_cells, DEGREE))
+        return JointPaths(2 * self.n_cells, subdivided(self.controls, self.n_cells, DEGREE))
 
     def subset(self, chosen: BoolArray) -> JointPaths:
         """Only the paths of the mask (n_paths,)."""

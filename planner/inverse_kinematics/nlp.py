@@ -1,7 +1,7 @@
-"""Inverse kinematics as a nonlinear programme with joint limits, one target at a time.
+"""Inverse kinematics as a nonlinear program with joint limits, one target at a time.
 
 `min |(q - q_before) / speed|^2 + w |(q - middle) / half range|^2` subject to `task(q) = target` and the
-limits of all joints, driven ones included, with the pen pointing down and not up. Built once for an arm,
+limits of all joints, mimic ones included, with the pen pointing down and not up. Built once for an arm,
 warm-started along a stroke; where that leads nowhere, started again from elsewhere.
 """
 
@@ -15,11 +15,11 @@ import casadi
 import numpy as np
 
 from planner.arms.arm import Arm, PenHold
-from planner.arms.kinematics import kinematics_of
-from planner.arms.projection import joint_scale
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.guesses import Guesses
 from planner.inverse_kinematics.result import Solutions
+from planner.kinematics.chain import kinematics_of
+from planner.kinematics.projection import joint_scale
 
 _CENTRING = 1e-3
 TOLERANCE_MM = 1e-3
@@ -27,7 +27,7 @@ _TOLERANCE_LIMITS = 1e-6
 _SURE_GUESSES = 2
 _MOST_SETTLING = 50
 _ROOM = 5e-3
-"""Share of each joint's range kept from its limits, for the splines that join the postures of sparse targets."""
+"""Share of each joint's range kept from its limits, for the splines that join the configurations of sparse targets."""
 
 
 class NlpSolver:
@@ -36,22 +36,44 @@ class NlpSolver:
     def __init__(self, arm: Arm) -> None:
         self.arm = arm
         self.kinematics = kinematics_of(arm)
-        free, joints = self.kinematics.free, self.kinematics.joints
-        before = casadi.SX.sym("before", self.kinematics.n_free)
+        independent, joints = self.kinematics.independent, self.kinematics.joints
+        before = casadi.SX.sym("before", self.kinematics.n_independent)
         middle, half = (arm.minimum + arm.maximum) / 2, (arm.maximum - arm.minimum) / 2
-        objective = (casadi.sumsqr((free - before) / joint_scale(self.kinematics))
-                     + _CENTRING * casadi.sumsqr((joints - middle) / half))
+        objective = casadi.sumsqr((independent - before) / joint_scale(self.kinematics)) + _CENTRING * casadi.sumsqr(
+            (joints - middle) / half
+        )
         points = arm.pen.hold is PenHold.TOOL_AXIS  # and the task alone would let the pen point straight up
         heights = [self.kinematics.axis[2]] if points else []
         constraints = casadi.vertcat(self.kinematics.task, joints, *heights)
-        problem = {"x": free, "p": before, "f": objective, "g": constraints}
+        problem = {"x": independent, "p": before, "f": objective, "g": constraints}
         quiet = {"print_time": False, "error_on_fail": False}
-        fast = casadi.nlpsol("sqp", "sqpmethod", problem, {
-            **quiet, "qpsol": "qrqp", "print_header": False, "print_iteration": False, "print_status": False,
-            "tol_pr": 1e-9, "tol_du": 1e-7, "max_iter": 30,
-            "qpsol_options": {"print_iter": False, "print_header": False, "print_info": False, "error_on_fail": False}})
-        sure = casadi.nlpsol("ip", "ipopt", problem, {
-            **quiet, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.max_iter": 300, "ipopt.tol": 1e-10})
+        fast = casadi.nlpsol(
+            "sqp",
+            "sqpmethod",
+            problem,
+            {
+                **quiet,
+                "qpsol": "qrqp",
+                "print_header": False,
+                "print_iteration": False,
+                "print_status": False,
+                "tol_pr": 1e-9,
+                "tol_du": 1e-7,
+                "max_iter": 30,
+                "qpsol_options": {
+                    "print_iter": False,
+                    "print_header": False,
+                    "print_info": False,
+                    "error_on_fail": False,
+                },
+            },
+        )
+        sure = casadi.nlpsol(
+            "ip",
+            "ipopt",
+            problem,
+            {**quiet, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.max_iter": 300, "ipopt.tol": 1e-10},
+        )
         on_task = np.zeros(self.kinematics.n_task)
         self._joints = slice(len(on_task), len(on_task) + arm.n_joints)
         self._lower = np.concatenate((on_task, arm.minimum, [-np.inf] * points))
@@ -60,10 +82,11 @@ class NlpSolver:
         self._fast, self._sure = (_Buffered(solver, self._lower, self._upper) for solver in (fast, sure))
         self._guesses = Guesses(self.kinematics)
 
-    def solve(self, target_mm: FloatArray, before: FloatArray, *, restarts: bool = True
-              ) -> tuple[FloatArray, bool, int, float]:
-        """Posture (n_free,) for a tip (3,) near the posture before, whether it converged, iterations, error in mm.
-        Where nothing converges it is the posture that comes nearest."""
+    def solve(
+        self, target_mm: FloatArray, before: FloatArray, *, restarts: bool = True
+    ) -> tuple[FloatArray, bool, int, float]:
+        """Configuration (n_independent,) for a tip (3,) near the configuration before, whether it converged,
+        iterations, error in mm. Where nothing converges it is the configuration that comes nearest."""
         self._lower[:3] = self._upper[:3] = target_mm  # the rest of the task, of pointing, has to be zero
         iterations, nearest, error_mm = 0, before, math.inf
         for solver, guess in self._attempts(target_mm, before, restarts):
@@ -77,8 +100,9 @@ class NlpSolver:
                 nearest, error_mm = solver.solution.copy(), miss_mm
         return nearest, False, iterations, error_mm
 
-    def _attempts(self, target_mm: FloatArray, before: FloatArray, restarts: bool
-                  ) -> Iterator[tuple[_Buffered, FloatArray]]:
+    def _attempts(
+        self, target_mm: FloatArray, before: FloatArray, restarts: bool
+    ) -> Iterator[tuple[_Buffered, FloatArray]]:
         """Solvers and their guesses, the cheapest first; what joints keep from their limits is given up last."""
         turned = self._guesses.turned(target_mm, before)
         self._keep(_ROOM)
@@ -105,17 +129,23 @@ class NlpSolver:
 class _Buffered:
     """A solver called through CasADi's raw buffers: its dictionaries would take longer than a warm solution does.
 
-    lower, upper: (n_constraints,), read anew at every call. solution: (n_free,) and constraints: (n_constraints,)
-    are those of the last one.
+    lower, upper: (n_constraints,), read anew at every call. solution: (n_independent,) and constraints:
+    (n_constraints,) are those of the last one.
     """
 
     def __init__(self, solver: casadi.Function, lower: FloatArray, upper: FloatArray) -> None:
-        n_free = solver.size1_in("x0")
-        self._before, self._guess = np.zeros(n_free), np.zeros(n_free)
-        self._unbounded = np.full(n_free, np.inf)
-        self._inputs = {"x0": self._guess, "p": self._before, "lbx": -self._unbounded, "ubx": self._unbounded,
-                        "lbg": lower, "ubg": upper}
-        self.solution, self.constraints = np.zeros(n_free), np.zeros(len(lower))
+        n_independent = solver.size1_in("x0")
+        self._before, self._guess = np.zeros(n_independent), np.zeros(n_independent)
+        self._unbounded = np.full(n_independent, np.inf)
+        self._inputs = {
+            "x0": self._guess,
+            "p": self._before,
+            "lbx": -self._unbounded,
+            "ubx": self._unbounded,
+            "lbg": lower,
+            "ubg": upper,
+        }
+        self.solution, self.constraints = np.zeros(n_independent), np.zeros(len(lower))
         self._buffer, self._evaluate = solver.buffer()
         for name, array in self._inputs.items():
             self._buffer.set_arg(solver.index_in(name), memoryview(array))  # type: ignore[call-arg, arg-type]
@@ -123,7 +153,8 @@ class _Buffered:
             self._buffer.set_res(solver.index_out(name), memoryview(array))  # type: ignore[call-arg, arg-type]
 
     def __call__(self, before: FloatArray, guess: FloatArray) -> tuple[bool, int]:
-        """Whether the solver is content, and its iterations, near a posture (n_free,) and started from a guess."""
+        """Whether the solver is content, and its iterations, near a configuration (n_independent,) and started from a
+        guess."""
         self._before[:], self._guess[:] = before, guess
         self._evaluate()
         statistics = self._buffer.stats()
@@ -137,7 +168,7 @@ def nlp_solver(arm: Arm) -> NlpSolver:
 
 
 def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, *, settle: bool = True) -> Solutions:
-    """Targets (n, 3) one after the other from free joints (n_free,), each near the one before.
+    """Targets (n, 3) one after the other from independent joints (n_independent,), each near the one before.
 
     With `settle` they are a path: the first is solved until it stays where it is, so that the path does not begin with
     the way from the start, and its iterations count all of that; the others have to follow from it, and are not
@@ -145,22 +176,23 @@ def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, *, settl
     """
     solver = nlp_solver(arm)
     n_targets = len(targets_mm)
-    postures = np.empty((n_targets, len(start)))
+    configurations = np.empty((n_targets, len(start)))
     converged = np.zeros(n_targets, dtype=bool)
     iterations = np.zeros(n_targets, dtype=np.int64)
     error_mm = np.empty(n_targets)
     before = start
-    for target in targets_mm[:1 if settle else 0]:
+    for target in targets_mm[: 1 if settle else 0]:
         for _ in range(_MOST_SETTLING):
-            settled, good, count, _ = solver.solve(target, before)
+            converged, good, count, _ = solver.solve(target, before)
             iterations[0] += count
-            if not good or np.abs(settled - before).max() < 1e-4:
+            if not good or np.abs(converged - before).max() < 1e-4:
                 break
-            before = settled
+            before = converged
     for index, target in enumerate(targets_mm):
-        postures[index], converged[index], count, error_mm[index] = solver.solve(
-            target, before, restarts=index == 0 or not settle)
+        configurations[index], converged[index], count, error_mm[index] = solver.solve(
+            target, before, restarts=index == 0 or not settle
+        )
         iterations[index] += count
         if converged[index]:
-            before = postures[index]
-    return Solutions(postures, converged, iterations, error_mm)
+            before = configurations[index]
+    return Solutions(configurations, converged, iterations, error_mm)

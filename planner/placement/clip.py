@@ -11,8 +11,9 @@ from planner.arrays import BoolArray, FloatArray
 _STEP_MM = 0.25
 
 
-def clip_strokes(strokes: Sequence[FloatArray], reachable: Callable[[FloatArray], BoolArray], reach_mm: float
-                 ) -> tuple[list[FloatArray], float, int]:
+def clip_strokes(
+    strokes: Sequence[FloatArray], reachable: Callable[[FloatArray], BoolArray], reach_mm: float
+) -> tuple[list[FloatArray], float, int]:
     """The reachable runs of strokes (n, 2), the length left out in mm, and the strokes and taps left out whole.
 
     reachable: points (n, 2) to (n,); none further than `reach_mm` from the base along either axis is. Strokes are

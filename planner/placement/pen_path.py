@@ -17,7 +17,7 @@ import numpy as np
 
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.ragged import starts_of, within
-from planner.spline import evaluate, evaluate_at, first_controls, halved
+from planner.spline import evaluate, evaluate_at, first_controls, subdivided
 
 DEGREE = 5
 _LONGEST_CELL_MM = 0.8
@@ -32,10 +32,10 @@ what corners are cut with what is overshot beside them, and lets the pen pass th
 _CORNER_GAIN = 0.25
 """A lone corner of turning angle t strays by 0.21 sin(t / 2) of the spacing where a control point lies on it, by 0.36
 at worst: the spacing to begin with is for a corner between the two."""
-_GENTLE, _FIRM = (0.93, 0.95), (0.8, 0.85)
+_SLOW, _FIRM = (0.93, 0.95), (0.8, 0.85)
 """Share of the tolerance that a refined spacing aims at, and the largest factor that it takes: first little by little,
 as every corner that is finer than it need be costs speed, then so that rounds come to an end."""
-_GENTLE_ROUNDS, _ROUNDS = 5, 30
+_SLOW_ROUNDS, _ROUNDS = 5, 30
 _SAMPLED = np.array([0.0, 0.25, 0.5, 0.75])
 """Fractions of every cell at which a path is compared with its polyline."""
 _GAP_MM = 1e4
@@ -62,9 +62,9 @@ class PenPaths:
         """(n, 2) points at one fraction in each of the named cells (counted over all paths)."""
         return evaluate_at(self.controls_mm, first_controls(self.n_cells, DEGREE)[cells], fractions, DEGREE)
 
-    def halved(self) -> PenPaths:
+    def subdivided(self) -> PenPaths:
         """The same paths with every cell cut in two, sigma counting the new cells."""
-        return PenPaths(2 * self.n_cells, halved(self.controls_mm, self.n_cells, DEGREE))
+        return PenPaths(2 * self.n_cells, subdivided(self.controls_mm, self.n_cells, DEGREE))
 
     def subset(self, chosen: BoolArray) -> PenPaths:
         """Only the paths of the mask (n_paths,)."""
@@ -92,7 +92,7 @@ def smoothed(polylines: Sequence[FloatArray], tolerance_mm: float) -> tuple[PenP
         if not worst.any():
             break
         # A lone corner is cut in proportion to the spacing, a bend in proportion to its square.
-        share, most = _GENTLE if count < _GENTLE_ROUNDS else _FIRM
+        share, most = _SLOW if count < _SLOW_ROUNDS else _FIRM
         finer = used_mm[worst] * np.clip(share * tolerance_mm / cut_mm[worst], 0.25, most)
         anchors_mm = np.concatenate((anchors_mm, at_mm[worst]))
         spacings_mm = np.concatenate((spacings_mm, finer))
@@ -224,9 +224,10 @@ def _sampled(line: _Polylines, spacing: _Spacing) -> tuple[PenPaths, FloatArray]
     starts = starts_of(count)
     half_mm = 0.5 * (line.end_mm - line.begin_mm)
     for ends_mm, first, sign, point, neighbour in (
-            (line.begin_mm, starts[:-1], 1, line.first, line.first + 1),
-            (line.end_mm, starts[1:] - 1, -1, line.last, line.last - 1)):
-        cubic_mm = np.minimum(stretch / _RAMP_CELLS ** 2 * spacing.at(ends_mm), half_mm / 50)
+        (line.begin_mm, starts[:-1], 1, line.first, line.first + 1),
+        (line.end_mm, starts[1:] - 1, -1, line.last, line.last - 1),
+    ):
+        cubic_mm = np.minimum(stretch / _RAMP_CELLS**2 * spacing.at(ends_mm), half_mm / 50)
         tangent = line.points_mm[neighbour] - line.points_mm[point]
         tangent /= np.hypot(*tangent.T)[:, None]
         for k, offset in enumerate(_FIRST_OFFSETS):
@@ -242,17 +243,19 @@ def _sharpened(before: FloatArray, at: FloatArray, behind: FloatArray) -> FloatA
 
 def _ramped(sigma: FloatArray, n_cells: IntArray) -> FloatArray:
     """Cells of uniform rate passed at sigma: of slope x^2 (3 - 2 x), x = sigma / ramp, near both ends, else 1."""
+
     def short_of(distance: FloatArray) -> FloatArray:
         x = np.clip(distance / _RAMP_CELLS, 0.0, 1.0)
-        return _RAMP_CELLS * (x ** 3 - 0.5 * x ** 4 - x + 0.5)  # integral of slope - 1, zero from the ramp's end on
+        return _RAMP_CELLS * (x**3 - 0.5 * x**4 - x + 0.5)  # integral of slope - 1, zero from the ramp's end on
 
     inside = np.clip(sigma, 0.0, n_cells)
     ramped: FloatArray = inside + short_of(inside) - short_of(n_cells - inside) - 0.5 * _RAMP_CELLS
     return ramped
 
 
-def _deviation(line: _Polylines, paths: PenPaths, arcs_mm: FloatArray, spacing: _Spacing
-               ) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _deviation(
+    line: _Polylines, paths: PenPaths, arcs_mm: FloatArray, spacing: _Spacing
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """How far each sampled curve point is from the polyline point of the same arc length, and each vertex from
     the curve there: upper bounds of the distance both ways. Also where on the axis of arc length that is,
     and the spacing used there."""

@@ -38,7 +38,7 @@ def in_pieces(strokes: Sequence[FloatArray], tolerance_mm: float, *, whole: bool
     stroke if they are wanted whole."""
     for stroke, work in zip(strokes, _work_along(strokes, tolerance_mm), strict=True):
         cuts = [0, *([] if whole else _cuts(stroke, work)), len(stroke) - 1]
-        yield [Piece(stroke[first:last + 1], float(work[last] - work[first])) for first, last in pairwise(cuts)]
+        yield [Piece(stroke[first : last + 1], float(work[last] - work[first])) for first, last in pairwise(cuts)]
 
 
 def _work_along(strokes: Sequence[FloatArray], tolerance_mm: float) -> Iterator[FloatArray]:
@@ -56,15 +56,17 @@ def _work_along(strokes: Sequence[FloatArray], tolerance_mm: float) -> Iterator[
             continue
         along = np.zeros(1)
         for first in range(0, len(stroke) - 1, _POINTS_AT_ONCE):
-            (more,) = _work_of([stroke[first:first + _POINTS_AT_ONCE + 1]], tolerance_mm)
+            (more,) = _work_of([stroke[first : first + _POINTS_AT_ONCE + 1]], tolerance_mm)
             along = np.concatenate((along, along[-1] + more[1:]))
         yield along
     yield from _work_of(together, tolerance_mm)
 
 
 def _work_of(strokes: Sequence[FloatArray], tolerance_mm: float) -> list[FloatArray]:
-    return [cells + _WORK_PER_POINT * np.arange(len(cells))
-            for cells in (expected_cells(strokes, tolerance_mm) if strokes else ())]
+    return [
+        cells + _WORK_PER_POINT * np.arange(len(cells))
+        for cells in (expected_cells(strokes, tolerance_mm) if strokes else ())
+    ]
 
 
 def _cuts(stroke: FloatArray, work: FloatArray) -> list[int]:

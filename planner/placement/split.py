@@ -1,4 +1,4 @@
-"""Cutting strokes where the arm has to change to another branch of postures, which it cannot with the pen down."""
+"""Cutting strokes where the arm has to change to another branch, which it cannot with the pen down."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from planner.arrays import BoolArray, FloatArray
 from planner.placement.clip import densified
 
 
-def split_strokes(strokes: Sequence[FloatArray], sheets: Sequence[Callable[[FloatArray], BoolArray]]
-                  ) -> tuple[list[FloatArray], int, int]:
+def split_strokes(
+    strokes: Sequence[FloatArray], sheets: Sequence[Callable[[FloatArray], BoolArray]]
+) -> tuple[list[FloatArray], int, int]:
     """Strokes (n, 2) in pieces that lie in one sheet each, how many were cut, and how many pieces there are more.
 
     sheets: each tells which of points (n, 2) it holds. Staying in a sheet for as long as possible takes the fewest
@@ -42,9 +43,9 @@ def _parts(points: FloatArray, held: BoolArray) -> list[FloatArray]:
         if lasts[sheets[-1]] <= cuts[-1]:
             return []
         cuts.append(lasts[sheets[-1]])
-    parts = [points[first:last + 1] for first, last in pairwise(cuts)]
+    parts = [points[first : last + 1] for first, last in pairwise(cuts)]
     is_closed = len(parts) > 2 and np.array_equal(points[0], points[-1])
-    if is_closed and held[sheets[0], cuts[-2]:].all():
+    if is_closed and held[sheets[0], cuts[-2] :].all():
         parts = [np.concatenate((parts[-1], parts[0][1:])), *parts[1:-1]]
     return parts
 

@@ -14,6 +14,9 @@ from planner.plots.look import USUAL, Look
 
 def plot_comparison(comparison: Comparison, look: Look = USUAL) -> Figure:
     """Errors: UsageError where not one method has found anything to show."""
-    plot = {TargetKind.SINGLE: plot_single, TargetKind.DRAWING: plot_along_drawing,
-            TargetKind.RANDOM: plot_distributions}[comparison.targets.kind]
+    plot = {
+        TargetKind.SINGLE: plot_single,
+        TargetKind.DRAWING: plot_along_drawing,
+        TargetKind.RANDOM: plot_distributions,
+    }[comparison.targets.kind]
     return plot(comparison, look)

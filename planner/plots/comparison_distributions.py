@@ -7,12 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from planner.arms.arm import Arm
-from planner.arms.sensitivity import sideways_error
-from planner.arms.singularity import manipulability
 from planner.arrays import FloatArray
 from planner.comparison.compare import Comparison, MethodResult
 from planner.comparison.figures import beyond_limits
 from planner.comparison.measured import Measured
+from planner.kinematics.sensitivity import sideways_error
+from planner.kinematics.singularity import manipulability
 from planner.plots.comparison_look import line_of, method_handles, shown
 from planner.plots.look import LIMIT_DASHES, USUAL, Look
 from planner.plots.sheet import Sheet
@@ -25,15 +25,20 @@ _FLOOR_MM = 1e-9
 
 def plot_distributions(comparison: Comparison, look: Look = USUAL) -> Figure:
     """Cumulative shares of all targets, those that are not solved counted as never reached: position error, iterations,
-    distance to the limits, change of posture on another visit, manipulability, and the tip's sensitivity.
+    distance to the limits, change of configuration on another visit, manipulability, and the tip's sensitivity.
     Errors: UsageError where no method solves a target."""
     arm = comparison.arm
     able = shown(comparison)
     with look.style():
         sheet = Sheet(look)
         width = (sheet.width - _LEFT - _RIGHT - (_COLUMNS - 1) * _BETWEEN) / _COLUMNS
-        panels = [sheet.panel(_LEFT + column * (width + _BETWEEN), _BOTTOM + (_ROWS - 1 - row) * (_HEIGHT + _BELOW),
-                              width, _HEIGHT) for row in range(_ROWS) for column in range(_COLUMNS)]
+        panels = [
+            sheet.panel(
+                _LEFT + column * (width + _BETWEEN), _BOTTOM + (_ROWS - 1 - row) * (_HEIGHT + _BELOW), width, _HEIGHT
+            )
+            for row in range(_ROWS)
+            for column in range(_COLUMNS)
+        ]
         for axes, (title, label, scale) in zip(panels, _PANELS, strict=True):
             axes.set_title(title, loc="left", size=1.15 * look.letter_pt, weight="bold")
             axes.set_xlabel(label)
@@ -56,8 +61,10 @@ def plot_distributions(comparison: Comparison, look: Look = USUAL) -> Figure:
             else:
                 axes.set_ylabel("share of the targets (%)")
         count = len(comparison.targets.tips_mm)
-        remark = (f"{count} random targets on the paper, each from the start; a curve that ends below 100 % leaves the "
-                  "rest unsolved")
+        remark = (
+            f"{count} random targets on the paper, each from the start; a curve that ends below 100 % leaves the "
+            "rest unsolved"
+        )
         return sheet.finish(f"methods on {arm.name}", remark, method_handles([result for result, _ in able]), _TITLE)
 
 
@@ -91,5 +98,13 @@ def _draw_shares(axes: Axes, values: FloatArray, count: int, result: MethodResul
     if not len(values):
         return
     line = line_of(result)
-    axes.step(np.sort(values), 100 * np.arange(1, len(values) + 1) / count, where="post", color=line.colour,
-              linestyle=line.dashes, linewidth=line.width, zorder=line.zorder, label=result.method.title)
+    axes.step(
+        np.sort(values),
+        100 * np.arange(1, len(values) + 1) / count,
+        where="post",
+        color=line.colour,
+        linestyle=line.dashes,
+        linewidth=line.width,
+        zorder=line.zorder,
+        label=result.method.title,
+    )

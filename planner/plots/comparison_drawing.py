@@ -1,5 +1,5 @@
-"""The picture of methods along a drawing: where on the paper each breaks limits, and its error and its postures along
-the way."""
+"""The picture of methods along a drawing: where on the paper each breaks limits, and its error and its configurations
+along the way."""
 
 from __future__ import annotations
 
@@ -59,10 +59,16 @@ def plot_along_drawing(comparison: Comparison, look: Look = USUAL) -> Figure:
             panel.tick_params(labelbottom=panel is panels[-1])
         panels[-1].set_xlabel("way drawn, strokes one after the other (mm)")
         sheet.figure.align_ylabels(panels)
-        remark = (f"{counted(len(targets.tips_mm), 'target')} along {counted(len(targets.firsts), 'stroke')}, "
-                  "seen from behind the base")
-        return sheet.finish(f"methods along a drawing on {arm.name}", remark,
-                            [*method_handles([result for result, _ in able]), *_marks(look)], _TITLE)
+        remark = (
+            f"{counted(len(targets.tips_mm), 'target')} along {counted(len(targets.firsts), 'stroke')}, "
+            "seen from behind the base"
+        )
+        return sheet.finish(
+            f"methods along a drawing on {arm.name}",
+            remark,
+            [*method_handles([result for result, _ in able]), *_marks(look)],
+            _TITLE,
+        )
 
 
 def _way_drawn_mm(targets: Targets) -> FloatArray:
@@ -73,19 +79,33 @@ def _way_drawn_mm(targets: Targets) -> FloatArray:
     return way
 
 
-def _draw_map(axes: Axes, arm: Arm, targets: Targets, result: MethodResult, measured: Measured,
-              look: Look) -> None:
+def _draw_map(axes: Axes, arm: Arm, targets: Targets, result: MethodResult, measured: Measured, look: Look) -> None:
     outside = measured.solved & (beyond_limits(arm, measured.joints) > LIMIT_SLACK).any(axis=1)
     size = 2.0 if len(targets.tips_mm) < _FEW_TARGETS else 1.0
-    kinds = ((measured.solved & ~outside, ".", look.colours.travel, "within"),
-             (outside, ".", look.colours.limit, "outside"), (~measured.solved, "x", look.colours.ink, "unsolved"))
+    kinds = (
+        (measured.solved & ~outside, ".", look.colours.travel, "within"),
+        (outside, ".", look.colours.limit, "outside"),
+        (~measured.solved, "x", look.colours.ink, "unsolved"),
+    )
     for chosen, marker, colour, label in kinds:
         y, x = targets.tips_mm[chosen, 1], targets.tips_mm[chosen, 0]
-        axes.plot(y, x, linestyle="none", marker=marker, markersize=size * (1 if marker == "." else 2),
-                  markeredgewidth=0 if marker == "." else 0.5, color=colour, label=label)
+        axes.plot(
+            y,
+            x,
+            linestyle="none",
+            marker=marker,
+            markersize=size * (1 if marker == "." else 2),
+            markeredgewidth=0 if marker == "." else 0.5,
+            color=colour,
+            label=label,
+        )
     share = float(outside.sum() / len(outside))
-    axes.set_title(f"{result.method.title}: {100 * share:.1f} % outside", loc="left", size=look.letter_pt,
-                   color=look.colours.limit if share else look.colours.ink)
+    axes.set_title(
+        f"{result.method.title}: {100 * share:.1f} % outside",
+        loc="left",
+        size=look.letter_pt,
+        color=look.colours.limit if share else look.colours.ink,
+    )
 
 
 def _draw_errors(axes: Axes, along: FloatArray, able: list[tuple[MethodResult, Measured]], targets: Targets) -> None:
@@ -96,13 +116,21 @@ def _draw_errors(axes: Axes, along: FloatArray, able: list[tuple[MethodResult, M
     axes.set_ylabel("tip's error (mm)")
 
 
-def _draw_joints(panels: list[Axes], arm: Arm, along: FloatArray, able: list[tuple[MethodResult, Measured]],
-                 targets: Targets, look: Look) -> None:
+def _draw_joints(
+    panels: list[Axes],
+    arm: Arm,
+    along: FloatArray,
+    able: list[tuple[MethodResult, Measured]],
+    targets: Targets,
+    look: Look,
+) -> None:
     """A panel a joint: its course by every method, and what is beyond its limits tinted."""
     lowest, highest = arm.to_file_units(arm.minimum), arm.to_file_units(arm.maximum)
     for index, (axes, joint) in enumerate(zip(panels, arm.joints, strict=True)):
-        courses = [(result, np.where(measured.solved, arm.to_file_units(measured.joints)[:, index], np.nan))
-                   for result, measured in able]
+        courses = [
+            (result, np.where(measured.solved, arm.to_file_units(measured.joints)[:, index], np.nan))
+            for result, measured in able
+        ]
         for result, course in courses:
             _draw_course(axes, along, course, result, targets)
         least = min(float(np.nanmin(course)) for _, course in courses)
@@ -123,14 +151,23 @@ def _draw_joints(panels: list[Axes], arm: Arm, along: FloatArray, able: list[tup
 def _draw_course(axes: Axes, along: FloatArray, values: FloatArray, result: MethodResult, targets: Targets) -> None:
     """A line that is broken between strokes."""
     breaks, line = targets.firsts[1:], line_of(result)
-    axes.plot(np.insert(along, breaks, np.nan), np.insert(values, breaks, np.nan), color=line.colour,
-              linestyle=line.dashes, linewidth=0.6 * line.width, zorder=line.zorder, label=result.method.title)
+    axes.plot(
+        np.insert(along, breaks, np.nan),
+        np.insert(values, breaks, np.nan),
+        color=line.colour,
+        linestyle=line.dashes,
+        linewidth=0.6 * line.width,
+        zorder=line.zorder,
+        label=result.method.title,
+    )
 
 
 def _marks(look: Look) -> list[Line2D]:
     """What the legend says of the maps and limits."""
     colours = look.colours
-    return [Line2D([], [], color=colours.travel, marker=".", linestyle="none", label="within the joint limits"),
-            Line2D([], [], color=colours.limit, marker=".", linestyle="none", label="a joint outside"),
-            Line2D([], [], color=colours.ink, marker="x", markersize=4, linestyle="none", label="not solved"),
-            Line2D([], [], color=colours.limit, linewidth=0.9, linestyle=LIMIT_DASHES, label="limit of the joint")]
+    return [
+        Line2D([], [], color=colours.travel, marker=".", linestyle="none", label="within the joint limits"),
+        Line2D([], [], color=colours.limit, marker=".", linestyle="none", label="a joint outside"),
+        Line2D([], [], color=colours.ink, marker="x", markersize=4, linestyle="none", label="not solved"),
+        Line2D([], [], color=colours.limit, linewidth=0.9, linestyle=LIMIT_DASHES, label="limit of the joint"),
+    ]

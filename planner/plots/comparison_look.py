@@ -43,8 +43,11 @@ def line_of(result: MethodResult) -> Line:
 
 def shown(comparison: Comparison) -> list[tuple[MethodResult, Measured]]:
     """The methods that solve at least one target. Errors: UsageError where none does."""
-    able = [(result, result.measured) for result in comparison.results
-            if result.measured is not None and result.measured.solved.any()]
+    able = [
+        (result, result.measured)
+        for result in comparison.results
+        if result.measured is not None and result.measured.solved.any()
+    ]
     if not able:
         raise UsageError("no method has solved a target, so there is nothing to draw")
     return able
@@ -52,5 +55,14 @@ def shown(comparison: Comparison) -> list[tuple[MethodResult, Measured]]:
 
 def method_handles(results: list[MethodResult]) -> list[Line2D]:
     """What the legend says of the methods."""
-    return [Line2D([], [], color=line_of(result).colour, linestyle=line_of(result).dashes,
-                   linewidth=line_of(result).width, label=result.method.title) for result in results]
+    return [
+        Line2D(
+            [],
+            [],
+            color=line_of(result).colour,
+            linestyle=line_of(result).dashes,
+            linewidth=line_of(result).width,
+            label=result.method.title,
+        )
+        for result in results
+    ]

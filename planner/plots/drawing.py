@@ -49,9 +49,11 @@ def plot_drawing(
         _line(axes, drawn_line, "drawn", color=colours.drawn, linewidth=0.11 * look.letter_pt, zorder=3)
         _dots(axes, _taps(trajectory, xy), "tap", color=colours.drawn, size=2.2, zorder=3)
         n_strokes = int(trajectory.stroke.max(initial=-1)) + 1
-        remark = (f"{counted(n_strokes, 'stroke')}, {_length_mm(drawn_line):.0f} mm drawn and "
-                  f"{_length_mm(travel_line):.0f} mm travelled in {trajectory.duration_s:.4g} s "
-                  f"on {trajectory.arm}, seen from behind its base")
+        remark = (
+            f"{counted(n_strokes, 'stroke')}, {_length_mm(drawn_line):.0f} mm drawn and "
+            f"{_length_mm(travel_line):.0f} mm travelled in {trajectory.duration_s:.4g} s "
+            f"on {trajectory.arm}, seen from behind its base"
+        )
         return sheet.finish(trajectory.drawing or "trajectory", remark, axes.get_legend_handles_labels()[0])
 
 
@@ -87,8 +89,17 @@ def _line(axes: Axes, line: FloatArray, label: str, *, color: str, linewidth: fl
 
 def _dots(axes: Axes, dots: FloatArray, label: str, *, color: str, size: float, zorder: float) -> None:
     if len(dots):
-        axes.plot(dots[:, 1], dots[:, 0], linestyle="none", marker="o", markersize=size, markeredgewidth=0,
-                  color=color, zorder=zorder, label=label)
+        axes.plot(
+            dots[:, 1],
+            dots[:, 0],
+            linestyle="none",
+            marker="o",
+            markersize=size,
+            markeredgewidth=0,
+            color=color,
+            zorder=zorder,
+            label=label,
+        )
 
 
 def _length_mm(line: FloatArray) -> float:

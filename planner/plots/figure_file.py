@@ -18,8 +18,8 @@ _UNDATED: dict[str, dict[str, None]] = {"png": {}, "svg": {"Date": None}, "pdf":
 
 
 def picture_format(target: Path) -> str:
-    """"png", "svg" or "pdf", from the suffix in either case; "png" for standard output. Errors: UsageError naming those
-    that work."""
+    """ "png", "svg" or "pdf", from the suffix in either case; "png" for standard output. Errors: UsageError naming
+    those that work."""
     if not target.suffix and is_standard_output(target):
         return "png"
     suffix = target.suffix.lower().removeprefix(".")

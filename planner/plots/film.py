@@ -40,8 +40,13 @@ class Film:
     """A motion on a sheet that is drawn once; each frame adds what the pen has drawn since the one before, and puts
     the arm over it. So a frame takes as long however much is drawn."""
 
-    def __init__(self, motion: Motion, canvas_corners_mm: FloatArray | None = None,
-                 reach_mm: tuple[float, float] | None = None, look: Look = USUAL) -> None:
+    def __init__(
+        self,
+        motion: Motion,
+        canvas_corners_mm: FloatArray | None = None,
+        reach_mm: tuple[float, float] | None = None,
+        look: Look = USUAL,
+    ) -> None:
         self.motion, self.look = motion, look
         with look.style():
             self._lay_out(canvas_corners_mm, reach_mm, look)
@@ -62,30 +67,48 @@ class Film:
         em_per_mm = (sheet.width - 2 * PAPER_LEFT - 2 * PAPER_RIGHT) / across_mm
         width = (high[1] - low[1]) * em_per_mm
         above = sheet.panel(PAPER_LEFT, PAPER_BOTTOM, width, (high[0] - low[0]) * em_per_mm)
-        beside = sheet.panel(2 * PAPER_LEFT + PAPER_RIGHT + width, PAPER_BOTTOM,
-                             (side_high[0] - side_low[0]) * em_per_mm, (side_high[1] - side_low[1]) * em_per_mm)
+        beside = sheet.panel(
+            2 * PAPER_LEFT + PAPER_RIGHT + width,
+            PAPER_BOTTOM,
+            (side_high[0] - side_low[0]) * em_per_mm,
+            (side_high[1] - side_low[1]) * em_per_mm,
+        )
         place_axes(above, low, high, width, colours)
         if reach_mm is not None:
             above.add_patch(half_ring(reach_mm, colours))
         if len(corners):
             above.add_patch(canvas_outline(corners, colours))
-        beside.set(xlim=(side_low[0], side_high[0]), ylim=(side_low[1], side_high[1]), xlabel="from the base (mm)",
-                   ylabel="height (mm)")
+        beside.set(
+            xlim=(side_low[0], side_high[0]),
+            ylim=(side_low[1], side_high[1]),
+            xlabel="from the base (mm)",
+            ylabel="height (mm)",
+        )
         tick_mm = round_step(_TICK_EM / em_per_mm)
         beside.xaxis.set_major_locator(MultipleLocator(tick_mm))
         beside.yaxis.set_major_locator(MultipleLocator(tick_mm))
         beside.axhline(0.0, color=colours.edge, linewidth=0.8, zorder=0)
 
         (self._line,) = above.plot([], [], color=colours.drawn, linewidth=0.9, zorder=3, animated=True, label="drawn")
-        (self._dots,) = above.plot([], [], color=colours.drawn, linestyle="none", marker="o", markeredgewidth=0,
-                                   markersize=0.9, animated=True)
+        (self._dots,) = above.plot(
+            [], [], color=colours.drawn, linestyle="none", marker="o", markeredgewidth=0, markersize=0.9, animated=True
+        )
         self._above, self._views = above, tuple((axes, *_arm_on(axes, colours)) for axes in (above, beside))
         speed = "" if motion.speed_factor == 1 else f", {motion.speed_factor:.3g} times as fast"
         self.figure = sheet.finish(
             motion.trajectory.drawing or "trajectory",
-            f"{motion.arm.name} draws, from above and square to the arm{speed}", [*self._views[0][1:], self._line])
-        self._clock = self.figure.text(1 - 1.6 / sheet.width, self.figure.texts[0].get_position()[1], "", ha="right",
-                                       va="top", size=1.15 * look.letter_pt, animated=True)
+            f"{motion.arm.name} draws, from above and square to the arm{speed}",
+            [*self._views[0][1:], self._line],
+        )
+        self._clock = self.figure.text(
+            1 - 1.6 / sheet.width,
+            self.figure.texts[0].get_position()[1],
+            "",
+            ha="right",
+            va="top",
+            size=1.15 * look.letter_pt,
+            animated=True,
+        )
         self._canvas = FigureCanvasAgg(self.figure)
 
     @property
@@ -108,14 +131,14 @@ class Film:
                 self._add_to_drawing(shown, until, joined)
                 paper = canvas.copy_from_bbox(self.figure.bbox)
                 shown = until
-            self._place_arm(motion.nodes_mm(times_s[frame:frame + 1]), time_s, int(motion.trajectory.stroke[until]))
+            self._place_arm(motion.nodes_mm(times_s[frame : frame + 1]), time_s, int(motion.trajectory.stroke[until]))
             picture: Frame = np.asarray(canvas.buffer_rgba(), dtype=np.uint8)
             height, width = (side - side % 2 for side in picture.shape[:2])
             yield picture[:height, :width, :3].copy()
 
     def _add_to_drawing(self, begin: int, end: int, joined: BoolArray) -> None:
-        xy = self.motion.tip_mm[begin:end + 1, :2]
-        touched = xy[self.motion.trajectory.pen[begin:end + 1]]  # a tap has no line, but has a dot
+        xy = self.motion.tip_mm[begin : end + 1, :2]
+        touched = xy[self.motion.trajectory.pen[begin : end + 1]]  # a tap has no line, but has a dot
         for artist, points in ((self._line, pieces(xy, joined[begin:end])), (self._dots, touched)):
             artist.set_data(points[:, 1], points[:, 0])
             self._above.draw_artist(artist)
@@ -127,15 +150,37 @@ class Film:
             tip.set_data(*corners[-1:].T)
             axes.draw_artist(links)
             axes.draw_artist(tip)
-        self._clock.set_text(f"{time_s:.2f} s of {self.motion.trajectory.duration_s:.2f} s, "
-                             + (f"stroke {stroke}" if stroke >= 0 else "pen up"))
+        self._clock.set_text(
+            f"{time_s:.2f} s of {self.motion.trajectory.duration_s:.2f} s, "
+            + (f"stroke {stroke}" if stroke >= 0 else "pen up")
+        )
         self.figure.draw_artist(self._clock)
 
 
 def _arm_on(axes: Axes, colours: Colours) -> tuple[Line2D, Line2D]:
     """The links, and the tip of the pen, yet to be placed."""
-    (links,) = axes.plot([], [], color=colours.link, linewidth=2.4, marker="o", markersize=4.5, markeredgewidth=0,
-                         zorder=5, animated=True, label="arm")
-    (tip,) = axes.plot([], [], color=colours.limit, linestyle="none", marker="o", markersize=4.5, markeredgewidth=0,
-                       zorder=5, animated=True, label="tip of the pen")
+    (links,) = axes.plot(
+        [],
+        [],
+        color=colours.link,
+        linewidth=2.4,
+        marker="o",
+        markersize=4.5,
+        markeredgewidth=0,
+        zorder=5,
+        animated=True,
+        label="arm",
+    )
+    (tip,) = axes.plot(
+        [],
+        [],
+        color=colours.limit,
+        linestyle="none",
+        marker="o",
+        markersize=4.5,
+        markeredgewidth=0,
+        zorder=5,
+        animated=True,
+        label="tip of the pen",
+    )
     return links, tip

@@ -33,7 +33,7 @@ _SHADES = 9  # from a ground to a colour on it, for the edges of lines
 
 
 def film_format(target: Path) -> str:
-    """"html", "gif" or "mp4", from the suffix in either case; "gif" for standard output.
+    """ "html", "gif" or "mp4", from the suffix in either case; "gif" for standard output.
 
     Errors: UsageError naming those that work, or where there is no ffmpeg to make an MP4.
     """
@@ -42,16 +42,22 @@ def film_format(target: Path) -> str:
     suffix = target.suffix.lower().removeprefix(".")
     if suffix not in FORMATS:
         given = f"'{target.suffix}'" if target.suffix else "no suffix"
-        raise UsageError(f"{target}: a film file ends in one of {', '.join(f'.{name}' for name in FORMATS)}; "
-                         f"this one has {given}")
+        raise UsageError(
+            f"{target}: a film file ends in one of {', '.join(f'.{name}' for name in FORMATS)}; this one has {given}"
+        )
     if suffix == "mp4":
         _ffmpeg()
     return suffix
 
 
-def save_film(motion: Motion, target: Path, canvas_corners_mm: FloatArray | None = None,
-              reach_mm: tuple[float, float] | None = None, look: Look = USUAL,
-              show: Show = lambda label, done, total: None) -> None:
+def save_film(
+    motion: Motion,
+    target: Path,
+    canvas_corners_mm: FloatArray | None = None,
+    reach_mm: tuple[float, float] | None = None,
+    look: Look = USUAL,
+    show: Show = lambda label, done, total: None,
+) -> None:
     """Write the film in the format that the suffix names; nothing is left behind where that fails.
 
     canvas_corners_mm (4, 2), reach_mm: drawn on the paper, where known.
@@ -65,8 +71,10 @@ def save_film(motion: Motion, target: Path, canvas_corners_mm: FloatArray | None
         return
     film = Film(motion, canvas_corners_mm, reach_mm, look)
     if kind == "gif" and film.n_frames > _MOST_GIF_FRAMES:
-        raise UsageError(f"a GIF of {film.n_frames} pictures is too large; choose a greater --speed-factor or a part "
-                         "(--from, --to), or write an .mp4 or .html")
+        raise UsageError(
+            f"a GIF of {film.n_frames} pictures is too large; choose a greater --speed-factor or a part "
+            "(--from, --to), or write an .mp4 or .html"
+        )
     with look.style(), written_aside(target, binary=True) as file:
         frames = _shown(film, show)
         if kind == "gif":
@@ -83,9 +91,13 @@ def _shown(film: Film, show: Show) -> Iterator[Frame]:
 
 def _palette(colours: Colours) -> Image.Image:
     """Every colour of a film on every ground, and the shades between."""
-    grounds, inks = (np.array([to_rgb(colour) for colour in chosen]) for chosen in (
-        (colours.surface, colours.ring),
-        (colours.ink, colours.quiet, colours.edge, colours.ring_edge, colours.drawn, colours.limit, colours.link)))
+    grounds, inks = (
+        np.array([to_rgb(colour) for colour in chosen])
+        for chosen in (
+            (colours.surface, colours.ring),
+            (colours.ink, colours.quiet, colours.edge, colours.ring_edge, colours.drawn, colours.limit, colours.link),
+        )
+    )
     share = np.linspace(0, 1, _SHADES)[:, np.newaxis]
     shades = [(1 - share) * ground + share * ink for ground in grounds for ink in inks]
     palette = Image.new("P", (1, 1))
@@ -98,8 +110,16 @@ def _write_gif(frames: Iterator[Frame], fps: float, palette: Image.Image, file: 
     pictures = (Image.fromarray(frame).quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
     ends = np.rint(100 / fps * np.arange(_MOST_GIF_FRAMES + 2))
     opening = next(pictures)
-    opening.save(file, format="gif", save_all=True, append_images=pictures, loop=0, disposal=1, optimize=False,
-                 duration=(10 * np.diff(ends).astype(int)).tolist())
+    opening.save(
+        file,
+        format="gif",
+        save_all=True,
+        append_images=pictures,
+        loop=0,
+        disposal=1,
+        optimize=False,
+        duration=(10 * np.diff(ends).astype(int)).tolist(),
+    )
 
 
 def _write_mp4(frames: Iterator[Frame], fps: float, file: IO[bytes], target: Path) -> None:
@@ -107,11 +127,34 @@ def _write_mp4(frames: Iterator[Frame], fps: float, file: IO[bytes], target: Pat
     height, width = first.shape[:2]
     with tempfile.TemporaryDirectory(prefix="plan-film-") as folder:
         film = Path(folder) / "film.mp4"
-        command = [_ffmpeg(), "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}",
-                   "-r", f"{fps:g}", "-i", "-", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18",
-                   "-movflags", "+faststart", str(film)]
-        with (Path(folder) / "log").open("w+b") as log, subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=log) as encoder:
+        command = [
+            _ffmpeg(),
+            "-loglevel",
+            "error",
+            "-f",
+            "rawvideo",
+            "-pix_fmt",
+            "rgb24",
+            "-s",
+            f"{width}x{height}",
+            "-r",
+            f"{fps:g}",
+            "-i",
+            "-",
+            "-c:v",
+            "libx264",
+            "-pix_fmt",
+            "yuv420p",
+            "-crf",
+            "18",
+            "-movflags",
+            "+faststart",
+            str(film),
+        ]
+        with (
+            (Path(folder) / "log").open("w+b") as log,
+            subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=log) as encoder,
+        ):
             try:
                 with suppress(BrokenPipeError), cast("IO[bytes]", encoder.stdin) as pipe:  # it says why when it ends
                     for frame in chain([first], frames):
@@ -135,6 +178,8 @@ def _ffmpeg() -> str:
     try:
         import imageio_ffmpeg
     except ImportError:
-        raise UsageError("an .mp4 film needs ffmpeg: install it, or pip install 'drawing-arm-planner[film]'; "
-                         ".gif and .html need nothing") from None
+        raise UsageError(
+            "an .mp4 film needs ffmpeg: install it, or pip install 'drawing-arm-planner[film]'; "
+            ".gif and .html need nothing"
+        ) from None
     return str(imageio_ffmpeg.get_ffmpeg_exe())

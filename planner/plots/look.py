@@ -59,13 +59,39 @@ class Colours:
 
 _COLOURS = {
     Theme.LIGHT: Colours(
-        surface="#FFFFFF", ink="#222222", quiet="#555555", edge="#777777", ring="#F1F1EE", ring_edge="#B5B5AE",
-        drawn="#0072B2", limit="#D55E00", wanted="#F2C66D", travel="#8C8C8C", lifting="#009E73", lowering="#D55E00",
-        resting="#CC79A7", link="#3C4246", scale=(0.0, 0.88)),
+        surface="#FFFFFF",
+        ink="#222222",
+        quiet="#555555",
+        edge="#777777",
+        ring="#F1F1EE",
+        ring_edge="#B5B5AE",
+        drawn="#0072B2",
+        limit="#D55E00",
+        wanted="#F2C66D",
+        travel="#8C8C8C",
+        lifting="#009E73",
+        lowering="#D55E00",
+        resting="#CC79A7",
+        link="#3C4246",
+        scale=(0.0, 0.88),
+    ),
     Theme.DARK: Colours(
-        surface="#15181B", ink="#E8E8E4", quiet="#ABB0B3", edge="#83898D", ring="#20262A", ring_edge="#4B5358",
-        drawn="#56B4E9", limit="#F08A3C", wanted="#5E4A16", travel="#8C9296", lifting="#2BC79A", lowering="#F08A3C",
-        resting="#D998BC", link="#C9CDCF", scale=(0.2, 1.0)),
+        surface="#15181B",
+        ink="#E8E8E4",
+        quiet="#ABB0B3",
+        edge="#83898D",
+        ring="#20262A",
+        ring_edge="#4B5358",
+        drawn="#56B4E9",
+        limit="#F08A3C",
+        wanted="#5E4A16",
+        travel="#8C9296",
+        lifting="#2BC79A",
+        lowering="#F08A3C",
+        resting="#D998BC",
+        link="#C9CDCF",
+        scale=(0.2, 1.0),
+    ),
 }
 _SIZES = {Size.PAPER: (180 / 25.4, 7.0, 300.0), Size.SCREEN: (12.8, 9.5, 150.0)}
 
@@ -94,40 +120,43 @@ class Look:
         """The style as a context: needed both where a figure is made and where it is saved."""
         colours, letter = self.colours, self.letter_pt
         line = letter / 13  # 0.6 points beside letters of 8
-        return matplotlib.style.context({
-            "font.family": "DejaVu Sans",  # comes with matplotlib, so a picture is the same everywhere
-            "font.size": letter,
-            "text.color": colours.ink,
-            "figure.facecolor": colours.surface,
-            "savefig.facecolor": colours.surface,
-            "axes.facecolor": colours.surface,
-            "axes.labelcolor": colours.ink,
-            "axes.edgecolor": colours.edge,
-            "axes.linewidth": line,
-            "axes.labelsize": letter,
-            "axes.titlecolor": colours.ink,
-            "axes.spines.top": False,
-            "axes.spines.right": False,
-            "xtick.labelsize": 0.88 * letter,
-            "ytick.labelsize": 0.88 * letter,
-            "xtick.color": colours.edge,
-            "ytick.color": colours.edge,
-            "xtick.labelcolor": colours.ink,
-            "ytick.labelcolor": colours.ink,
-            "xtick.major.width": line,
-            "ytick.major.width": line,
-            "xtick.major.size": 0.3 * letter,
-            "ytick.major.size": 0.3 * letter,
-            "legend.frameon": False,
-            "legend.fontsize": letter,
-            "lines.solid_joinstyle": "round",
-            "lines.solid_capstyle": "round",
-            "savefig.dpi": self.dpi,
-            "figure.dpi": self.dpi,
-            "pdf.fonttype": 42,
-            "svg.hashsalt": "plan",  # the same trajectory gives the same file, byte for byte
-            "agg.path.chunksize": 20_000,
-        }, after_reset=True)
+        return matplotlib.style.context(
+            {
+                "font.family": "DejaVu Sans",  # comes with matplotlib, so a picture is the same everywhere
+                "font.size": letter,
+                "text.color": colours.ink,
+                "figure.facecolor": colours.surface,
+                "savefig.facecolor": colours.surface,
+                "axes.facecolor": colours.surface,
+                "axes.labelcolor": colours.ink,
+                "axes.edgecolor": colours.edge,
+                "axes.linewidth": line,
+                "axes.labelsize": letter,
+                "axes.titlecolor": colours.ink,
+                "axes.spines.top": False,
+                "axes.spines.right": False,
+                "xtick.labelsize": 0.88 * letter,
+                "ytick.labelsize": 0.88 * letter,
+                "xtick.color": colours.edge,
+                "ytick.color": colours.edge,
+                "xtick.labelcolor": colours.ink,
+                "ytick.labelcolor": colours.ink,
+                "xtick.major.width": line,
+                "ytick.major.width": line,
+                "xtick.major.size": 0.3 * letter,
+                "ytick.major.size": 0.3 * letter,
+                "legend.frameon": False,
+                "legend.fontsize": letter,
+                "lines.solid_joinstyle": "round",
+                "lines.solid_capstyle": "round",
+                "savefig.dpi": self.dpi,
+                "figure.dpi": self.dpi,
+                "pdf.fonttype": 42,
+                "svg.hashsalt": "plan",  # the same trajectory gives the same file, byte for byte
+                "agg.path.chunksize": 20_000,
+            },
+            after_reset=True,
+        )
 
 
 USUAL = Look.of()

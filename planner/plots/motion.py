@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arms.arm import Arm, JointKind
-from planner.arms.frame_jacobian import chain_frames
 from planner.arrays import FloatArray, IntArray
 from planner.errors import UsageError
+from planner.kinematics.frame_jacobian import chain_frames
 from planner.plots.samples import window_s
 from planner.trajectory import Trajectory
 
@@ -56,8 +56,9 @@ class Motion:
         share = (at - before)[:, np.newaxis]
         positions = self.trajectory.positions
         joints = self.arm.from_file_units((1 - share) * positions[before] + share * positions[after])
-        return np.concatenate([_nodes(self.arm, joints[first:first + _BLOCK])
-                               for first in range(0, len(joints), _BLOCK)])
+        return np.concatenate(
+            [_nodes(self.arm, joints[first : first + _BLOCK]) for first in range(0, len(joints), _BLOCK)]
+        )
 
     def pen_lines(self) -> tuple[IntArray, IntArray]:
         """Samples that tell what the pen draws until the end of this part, and which begin a line, both (k,).
@@ -66,30 +67,46 @@ class Motion:
         """
         trajectory = self.trajectory
         (last,) = self.last_samples(np.array([self.end_s]))
-        down = np.flatnonzero(trajectory.pen[:last + 1])
+        down = np.flatnonzero(trajectory.pen[: last + 1])
         begins = np.ones(len(down), dtype=np.bool_)
         begins[1:] = (np.diff(down) > 1) | (np.diff(trajectory.stroke[down]) != 0)
-        finishes = np.append(begins[1:], True)[:len(down)]
+        finishes = np.append(begins[1:], True)[: len(down)]
         steps_mm = np.linalg.norm(np.diff(self.tip_mm[down, :2], axis=0, prepend=self.tip_mm[down[:1], :2]), axis=1)
         cell = np.floor(np.cumsum(steps_mm) / _CELL_MM)
         kept = begins | finishes | (np.diff(cell, prepend=-1.0) > 0)
         return down[kept], begins[kept].astype(np.int64)
 
 
-def motion_of(trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, *, speed_factor: float | None = None,
-              fps: float | None = None, from_s: float | None = None, to_s: float | None = None) -> Motion:
+def motion_of(
+    trajectory: Trajectory,
+    arm: Arm,
+    tip_mm: FloatArray,
+    *,
+    speed_factor: float | None = None,
+    fps: float | None = None,
+    from_s: float | None = None,
+    to_s: float | None = None,
+) -> Motion:
     """The part between two times. speed_factor: None for as fast as the arm, or what makes it last 20 s if that is
     faster. fps: frames per second, 20 unless given.
 
     Errors: UsageError where there is nothing in that part, or too much for a film.
     """
     begin_s, end_s = window_s(trajectory, from_s, to_s)
-    motion = Motion(trajectory, arm, tip_mm, begin_s, end_s,
-                    speed_factor or max((end_s - begin_s) / _USUAL_LENGTH_S, 1.0), fps or USUAL_FPS)
+    motion = Motion(
+        trajectory,
+        arm,
+        tip_mm,
+        begin_s,
+        end_s,
+        speed_factor or max((end_s - begin_s) / _USUAL_LENGTH_S, 1.0),
+        fps or USUAL_FPS,
+    )
     n_frames = (end_s - begin_s) * motion.fps / motion.speed_factor
     if n_frames > _MOST_FRAMES:
-        raise UsageError(f"a film of {n_frames:.0f} pictures; choose a greater --speed-factor, fewer --fps or a part "
-                         "(--from, --to)")
+        raise UsageError(
+            f"a film of {n_frames:.0f} pictures; choose a greater --speed-factor, fewer --fps or a part (--from, --to)"
+        )
     return motion
 
 

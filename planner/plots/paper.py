@@ -20,8 +20,15 @@ PAPER_LEFT, PAPER_BOTTOM, PAPER_RIGHT = 5.4, 4.2, 1.8
 _TICK_EM = 5.5  # a label such as -120, with room beside it
 
 
-def paper_panel(sheet: Sheet, lines_mm: Sequence[FloatArray], canvas_corners_mm: FloatArray | None,
-                reach_mm: tuple[float, float] | None, *, bottom: float = 0.0, right: float = 0.0) -> Axes:
+def paper_panel(
+    sheet: Sheet,
+    lines_mm: Sequence[FloatArray],
+    canvas_corners_mm: FloatArray | None,
+    reach_mm: tuple[float, float] | None,
+    *,
+    bottom: float = 0.0,
+    right: float = 0.0,
+) -> Axes:
     """A panel that shows the paper with all of some lines (n, 2), as wide as the sheet and as high as it needs to be,
     with the ring and the canvas in it where they are known. bottom, right: em left free beside it."""
     canvas = np.empty((0, 2)) if canvas_corners_mm is None else np.asarray(canvas_corners_mm, dtype=np.float64)
@@ -59,22 +66,49 @@ def place_axes(axes: Axes, low: FloatArray, high: FloatArray, width_em: float, c
     axes.yaxis.set_major_locator(MultipleLocator(tick_mm))
     axes.set_xlabel("arm y (mm)")
     axes.set_ylabel("arm x (mm)")
-    axes.plot(0.0, 0.0, linestyle="none", marker="^", markersize=float(np.clip(0.12 * width_em, 4, 8)),
-              color=colours.ink, markeredgewidth=0, zorder=4, label="base of the arm")
+    axes.plot(
+        0.0,
+        0.0,
+        linestyle="none",
+        marker="^",
+        markersize=float(np.clip(0.12 * width_em, 4, 8)),
+        color=colours.ink,
+        markeredgewidth=0,
+        zorder=4,
+        label="base of the arm",
+    )
 
 
 def half_ring(reach_mm: tuple[float, float], colours: Colours, *, face: str | None = None) -> Wedge:
     """What the pen reaches in front of the base, between two radii."""
     inner, outer = reach_mm
-    return Wedge((0.0, 0.0), outer, 0.0, 180.0, width=outer - inner, facecolor=face or colours.ring,
-                 edgecolor=colours.ring_edge, linewidth=0.6, zorder=0, label="reach of the pen")
+    return Wedge(
+        (0.0, 0.0),
+        outer,
+        0.0,
+        180.0,
+        width=outer - inner,
+        facecolor=face or colours.ring,
+        edgecolor=colours.ring_edge,
+        linewidth=0.6,
+        zorder=0,
+        label="reach of the pen",
+    )
 
 
-def canvas_outline(corners_mm: FloatArray, colours: Colours, *, face: str | None = None, edge: str | None = None
-                   ) -> Polygon:
+def canvas_outline(
+    corners_mm: FloatArray, colours: Colours, *, face: str | None = None, edge: str | None = None
+) -> Polygon:
     """The canvas from its corners (4, 2) in arm coordinates."""
-    return Polygon(corners_mm[:, ::-1], closed=True, facecolor=face or colours.surface, edgecolor=edge or colours.edge,
-                   linewidth=0.7, zorder=1, label="canvas")
+    return Polygon(
+        corners_mm[:, ::-1],
+        closed=True,
+        facecolor=face or colours.surface,
+        edgecolor=edge or colours.edge,
+        linewidth=0.7,
+        zorder=1,
+        label="canvas",
+    )
 
 
 def pieces(xy: FloatArray, joined: BoolArray) -> FloatArray:

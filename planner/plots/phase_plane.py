@@ -19,8 +19,9 @@ _N_BINS = 1500
 _VIEW, _FARTHEST_VIEW = (1.5, 4.0), 12.0  # times the greatest speed
 
 
-def plot_phase_plane(trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, stroke: int | None = None,
-                     look: Look = USUAL) -> Figure:
+def plot_phase_plane(
+    trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, stroke: int | None = None, look: Look = USUAL
+) -> Figure:
     """Speed along the path over the way of the pen on it, with the velocity limit curve, beyond which is tinted, and
     the acceleration limit curve. stroke: its index; None for the one that takes longest.
 
@@ -42,12 +43,29 @@ def plot_phase_plane(trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, strok
         top = _top(speeds)
         limit_mm, limit = min_max_envelope(speeds.way_mm, speeds.velocity_limit_mm_s, _N_BINS)
         axes.fill_between(limit_mm, np.minimum(limit, 10 * top), 10 * top, color=colours.limit, alpha=0.13, linewidth=0)
-        axes.plot(limit_mm, limit, color=colours.limit, linewidth=0.9, linestyle=LIMIT_DASHES, zorder=3.5,
-                  label="velocity limit curve")
-        axes.plot(*min_max_envelope(speeds.acceleration_way_mm, speeds.acceleration_limit_mm_s, _N_BINS),
-                  color=colours.lifting, linewidth=0.8, zorder=2.5, label="acceleration limit curve")
-        axes.plot(*min_max_envelope(speeds.way_mm, speeds.speed_mm_s, _N_BINS), color=colours.drawn, linewidth=1.2,
-                  zorder=3, label="speed of the pen")
+        axes.plot(
+            limit_mm,
+            limit,
+            color=colours.limit,
+            linewidth=0.9,
+            linestyle=LIMIT_DASHES,
+            zorder=3.5,
+            label="velocity limit curve",
+        )
+        axes.plot(
+            *min_max_envelope(speeds.acceleration_way_mm, speeds.acceleration_limit_mm_s, _N_BINS),
+            color=colours.lifting,
+            linewidth=0.8,
+            zorder=2.5,
+            label="acceleration limit curve",
+        )
+        axes.plot(
+            *min_max_envelope(speeds.way_mm, speeds.speed_mm_s, _N_BINS),
+            color=colours.drawn,
+            linewidth=1.2,
+            zorder=3,
+            label="speed of the pen",
+        )
         axes.set_xlim(0.0, float(speeds.way_mm[-1]))
         axes.set_ylim(0.0, top)
         axes.set_xlabel("way of the pen in the stroke (mm)")
@@ -55,9 +73,11 @@ def plot_phase_plane(trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, strok
         begin, end = samples[[0, -1]] / trajectory.rate_hz
         use = speeds.speed_mm_s / speeds.velocity_limit_mm_s
         nearest = int(np.argmax(use))
-        remark = (f"stroke {index}, {begin:.2f} to {end:.2f} s on {arm.name}; nearest to its velocity limit is "
-                  f"{arm.joints[int(speeds.binding[nearest])].name}, {100 * use[nearest]:.0f} % of it at "
-                  f"{speeds.way_mm[nearest]:.1f} mm")
+        remark = (
+            f"stroke {index}, {begin:.2f} to {end:.2f} s on {arm.name}; nearest to its velocity limit is "
+            f"{arm.joints[int(speeds.binding[nearest])].name}, {100 * use[nearest]:.0f} % of it at "
+            f"{speeds.way_mm[nearest]:.1f} mm"
+        )
         return sheet.finish(trajectory.drawing or "trajectory", remark, axes.get_legend_handles_labels()[0])
 
 

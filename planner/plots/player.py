@@ -21,10 +21,14 @@ _MOST_POSES = 20_000
 _LARGEST = 32_000  # of a 16 bit number
 
 
-def player_page(motion: Motion, canvas_corners_mm: FloatArray | None = None,
-                reach_mm: tuple[float, float] | None = None, look: Look = USUAL) -> str:
-    """The page. Of a long motion it holds some twenty thousand postures, and moves the arm evenly between them; what
-    the pen draws it holds to a twentieth of a millimetre."""
+def player_page(
+    motion: Motion,
+    canvas_corners_mm: FloatArray | None = None,
+    reach_mm: tuple[float, float] | None = None,
+    look: Look = USUAL,
+) -> str:
+    """The page. Of a long motion it holds some twenty thousand configurations, and moves the arm evenly between them;
+    what the pen draws it holds to a twentieth of a millimetre."""
     trajectory = motion.trajectory
     n_poses = int(np.clip((motion.end_s - motion.begin_s) * trajectory.rate_hz + 1, 2, _MOST_POSES))
     nodes_mm = motion.nodes_mm(np.linspace(motion.begin_s, motion.end_s, n_poses))
@@ -36,23 +40,43 @@ def player_page(motion: Motion, canvas_corners_mm: FloatArray | None = None,
     scale_mm = max(float(np.abs(nodes_mm).max()), float(np.abs(motion.tip_mm).max()), 1.0) / _LARGEST
     colours = look.colours
     film = {
-        "name": trajectory.drawing or "trajectory", "arm": motion.arm.name, "rate": trajectory.rate_hz,
-        "begin": motion.begin_s, "end": motion.end_s, "speed": motion.speed_factor, "scale": scale_mm,
-        "nodes": nodes_mm.shape[1], "poses": _numbers(nodes_mm / scale_mm, "<i2"),
-        "line": _numbers(motion.tip_mm[samples, :2] / scale_mm, "<i2"), "samples": _numbers(samples, "<u4"),
-        "begins": _numbers(begins, "u1"), "reach": reach_mm, "canvas": corners.tolist(),
+        "name": trajectory.drawing or "trajectory",
+        "arm": motion.arm.name,
+        "rate": trajectory.rate_hz,
+        "begin": motion.begin_s,
+        "end": motion.end_s,
+        "speed": motion.speed_factor,
+        "scale": scale_mm,
+        "nodes": nodes_mm.shape[1],
+        "poses": _numbers(nodes_mm / scale_mm, "<i2"),
+        "line": _numbers(motion.tip_mm[samples, :2] / scale_mm, "<i2"),
+        "samples": _numbers(samples, "<u4"),
+        "begins": _numbers(begins, "u1"),
+        "reach": reach_mm,
+        "canvas": corners.tolist(),
         "above": [*low.tolist(), *high.tolist()],
-        "beside": [float(side[..., 0].min()) - margin_mm, min(float(side[..., 1].min()), 0.0) - margin_mm,
-                   float(side[..., 0].max()) + margin_mm, float(side[..., 1].max()) + margin_mm],
-        "colours": {key: getattr(colours, key) for key in (
-            "surface", "ink", "quiet", "edge", "ring", "ring_edge", "drawn", "limit", "link")},
+        "beside": [
+            float(side[..., 0].min()) - margin_mm,
+            min(float(side[..., 1].min()), 0.0) - margin_mm,
+            float(side[..., 0].max()) + margin_mm,
+            float(side[..., 1].max()) + margin_mm,
+        ],
+        "colours": {
+            key: getattr(colours, key)
+            for key in ("surface", "ink", "quiet", "edge", "ring", "ring_edge", "drawn", "limit", "link")
+        },
     }
     template = files("planner.plots").joinpath("player.html").read_text(encoding="utf-8")
     # a name must not end the script that it stands in
-    return (template.replace("$TITLE", html.escape(f"{film['name']} on {motion.arm.name}"))
-            .replace("$SURFACE", colours.surface).replace("$INK", colours.ink).replace("$QUIET", colours.quiet)
-            .replace("$EDGE", colours.edge).replace("$DRAWN", colours.drawn)
-            .replace("$FILM", json.dumps(film).replace("<", "\\u003c")))
+    return (
+        template.replace("$TITLE", html.escape(f"{film['name']} on {motion.arm.name}"))
+        .replace("$SURFACE", colours.surface)
+        .replace("$INK", colours.ink)
+        .replace("$QUIET", colours.quiet)
+        .replace("$EDGE", colours.edge)
+        .replace("$DRAWN", colours.drawn)
+        .replace("$FILM", json.dumps(film).replace("<", "\\u003c"))
+    )
 
 
 def _numbers(values: npt.NDArray[np.generic], kind: str) -> str:

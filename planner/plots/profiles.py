@@ -70,8 +70,9 @@ class _Profile:
         return f"{room:.1f} {self.unit} to spare" if not self.is_over else f"{-room:.1f} {self.unit} too far"
 
 
-def plot_profiles(trajectory: Trajectory, arm: Arm, look: Look = USUAL, *, from_s: float | None = None,
-                  to_s: float | None = None) -> Figure:
+def plot_profiles(
+    trajectory: Trajectory, arm: Arm, look: Look = USUAL, *, from_s: float | None = None, to_s: float | None = None
+) -> Figure:
     """A row of panels for each joint: position, velocity, acceleration and jerk over time, in degrees or
     millimetres and seconds, with the arm's limits as lines and what is beyond them tinted; the time that
     the pen is on the paper is shaded. Above each panel stands how much of the limit is used.
@@ -91,24 +92,37 @@ def plot_profiles(trajectory: Trajectory, arm: Arm, look: Look = USUAL, *, from_
         first: Axes | None = None
         for row in range(arm.n_joints):
             for order, column in enumerate(columns):
-                axes = sheet.panel(_LEFT + order * (width + _COLUMN_GAP),
-                                   _BOTTOM + (arm.n_joints - 1 - row) * (_ROW + _ROW_GAP), width, _ROW, share_x=first)
+                axes = sheet.panel(
+                    _LEFT + order * (width + _COLUMN_GAP),
+                    _BOTTOM + (arm.n_joints - 1 - row) * (_ROW + _ROW_GAP),
+                    width,
+                    _ROW,
+                    share_x=first,
+                )
                 first = first or axes
                 _draw(axes, column[row], look)
                 axes.yaxis.set_label_coords(-_LABEL / width, 0.5)
                 _shade_pen_down(axes, spans, look.colours)
                 if row == 0:
-                    axes.annotate(_QUANTITIES[order].capitalize(), (0, 1), xycoords="axes fraction",
-                                  xytext=(0, 1.5 * look.letter_pt), textcoords="offset points", weight="bold",
-                                  size=1.15 * look.letter_pt)
+                    axes.annotate(
+                        _QUANTITIES[order].capitalize(),
+                        (0, 1),
+                        xycoords="axes fraction",
+                        xytext=(0, 1.5 * look.letter_pt),
+                        textcoords="offset points",
+                        weight="bold",
+                        size=1.15 * look.letter_pt,
+                    )
                 if row == arm.n_joints - 1:
                     axes.set_xlabel("time (s)")
                 else:
                     axes.tick_params(labelbottom=False)
         rest_s = max(0.004 * (window[1] - window[0]), 2 / trajectory.rate_hz)
         sheet.figure.axes[0].set_xlim(window[0] - rest_s, window[1] + rest_s)
-        remark = (f"{_shown(trajectory, window)} at {trajectory.rate_hz:g} Hz on {arm.name}, "
-                  f"method {trajectory.method}; derivatives are differences of the samples")
+        remark = (
+            f"{_shown(trajectory, window)} at {trajectory.rate_hz:g} Hz on {arm.name}, "
+            f"method {trajectory.method}; derivatives are differences of the samples"
+        )
         legend = _legend(look, any(profile.is_over for column in columns for profile in column))
         return sheet.finish(trajectory.drawing or "trajectory", remark, legend, _HEADS)
 
@@ -138,15 +152,21 @@ def _profiles(trajectory: Trajectory, arm: Arm, order: int, window: tuple[float,
     else:
         high = arm.to_file_units((arm.max_velocity, arm.max_acceleration, arm.max_jerk)[order - 1])
         low = -high
-    return [_Profile(order, joint.name, joint.file_unit, times_s, values[:, k], float(low[k]), float(high[k]))
-            for k, joint in enumerate(arm.joints)]
+    return [
+        _Profile(order, joint.name, joint.file_unit, times_s, values[:, k], float(low[k]), float(high[k]))
+        for k, joint in enumerate(arm.joints)
+    ]
 
 
 def _draw(axes: Axes, profile: _Profile, look: Look) -> None:
     colours = look.colours
     thin = len(profile.values) > 2 * _N_BINS
-    axes.plot(*min_max_envelope(profile.times_s, profile.values, _N_BINS),
-              color=colours.drawn, linewidth=0.5 if thin else 1.0, zorder=3)
+    axes.plot(
+        *min_max_envelope(profile.times_s, profile.values, _N_BINS),
+        color=colours.drawn,
+        linewidth=0.5 if thin else 1.0,
+        zorder=3,
+    )
     for limit in (profile.low, profile.high):
         axes.axhline(limit, color=colours.limit, linewidth=0.9, linestyle=LIMIT_DASHES, zorder=3.5)
     bottom = min(profile.low, float(profile.values.min()))
@@ -163,13 +183,25 @@ def _draw(axes: Axes, profile: _Profile, look: Look) -> None:
         unit = f"10³ {unit}"
     axes.set_ylabel(f"{profile.joint} ({unit})" if profile.order == 0 else unit)
     axes.yaxis.label.set_parse_math(False)
-    axes.set_title(profile.remark, loc="right", size=0.85 * look.letter_pt, pad=0.3 * look.letter_pt,
-                   color=colours.limit if profile.is_over else colours.ink,
-                   weight="bold" if profile.is_over else "normal")
+    axes.set_title(
+        profile.remark,
+        loc="right",
+        size=0.85 * look.letter_pt,
+        pad=0.3 * look.letter_pt,
+        color=colours.limit if profile.is_over else colours.ink,
+        weight="bold" if profile.is_over else "normal",
+    )
     if profile.is_over:
         worst = int(np.argmax(np.abs(profile.values - (profile.low + profile.high) / 2)))
-        axes.plot(profile.times_s[worst], profile.values[worst], "o", markersize=4, markerfacecolor="none",
-                  markeredgecolor=colours.limit, zorder=4)
+        axes.plot(
+            profile.times_s[worst],
+            profile.values[worst],
+            "o",
+            markersize=4,
+            markerfacecolor="none",
+            markeredgecolor=colours.limit,
+            zorder=4,
+        )
 
 
 def _in_thousands(value: float, _position: int | None) -> str:
@@ -179,12 +211,22 @@ def _in_thousands(value: float, _position: int | None) -> str:
 def _shade_pen_down(axes: Axes, spans: FloatArray, colours: Colours) -> None:
     """Grey from bottom to top while the pen is down, paler where it is down for part of a span only."""
     start, end, share = spans.T
-    corners = np.stack([np.column_stack((x, np.full(len(spans), y)))
-                        for x, y in ((start, 0.0), (end, 0.0), (end, 1.0), (start, 1.0))], axis=1)
-    axes.add_collection(PolyCollection(
-        list(corners), facecolors=to_rgba_array([colours.travel] * len(spans), alpha=list(_PEN_ALPHA * share)),
-        linewidths=0, antialiaseds=False, transform=axes.get_xaxis_transform(), zorder=0.5,
-        label="pen on the paper"), autolim=False)
+    corners = np.stack(
+        [np.column_stack((x, np.full(len(spans), y))) for x, y in ((start, 0.0), (end, 0.0), (end, 1.0), (start, 1.0))],
+        axis=1,
+    )
+    axes.add_collection(
+        PolyCollection(
+            list(corners),
+            facecolors=to_rgba_array([colours.travel] * len(spans), alpha=list(_PEN_ALPHA * share)),
+            linewidths=0,
+            antialiaseds=False,
+            transform=axes.get_xaxis_transform(),
+            zorder=0.5,
+            label="pen on the paper",
+        ),
+        autolim=False,
+    )
 
 
 def _legend(look: Look, any_over: bool) -> list[Line2D | Patch]:
@@ -195,6 +237,16 @@ def _legend(look: Look, any_over: bool) -> list[Line2D | Patch]:
         Patch(facecolor=colours.travel, alpha=_PEN_ALPHA, linewidth=0, label="pen on the paper"),
     ]
     if any_over:
-        entries.append(Line2D([], [], color=colours.limit, marker="o", markersize=4, markerfacecolor="none",
-                              linestyle="none", label="worst sample over a limit"))
+        entries.append(
+            Line2D(
+                [],
+                [],
+                color=colours.limit,
+                marker="o",
+                markersize=4,
+                markerfacecolor="none",
+                linestyle="none",
+                label="worst sample over a limit",
+            )
+        )
     return entries

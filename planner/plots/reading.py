@@ -33,8 +33,10 @@ def plot_reading(picture: Picture, reading: Reading, source: str, look: Look = U
         _marks(axes, reading, look)
         n_marks = len(reading.measured) + len(reading.missing)
         heights = sum(mark.contact is not None for mark in reading.measured)
-        remark = (f"{len(reading.measured)} of {n_marks} marks and {heights} heights, from {len(reading.tags.page_mm)} "
-                  f"tags of sheet {reading.layout.name}; seen from straight above, the base below")
+        remark = (
+            f"{len(reading.measured)} of {n_marks} marks and {heights} heights, from {len(reading.tags.page_mm)} "
+            f"tags of sheet {reading.layout.name}; seen from straight above, the base below"
+        )
         return sheet.finish(source, remark, axes.get_legend_handles_labels()[0])
 
 
@@ -49,8 +51,13 @@ def _photo(axes: Axes, photo: NDArray[np.uint8], extent_mm: FloatArray) -> None:
 
 def _tags(axes: Axes, reading: Reading, look: Look) -> None:
     for index, corners in enumerate(reading.tags.page_mm):
-        axes.fill(*corners.T, facecolor="none", edgecolor=look.colours.lifting, linewidth=0.15 * look.letter_pt,
-                  label="_" if index else "tag")
+        axes.fill(
+            *corners.T,
+            facecolor="none",
+            edgecolor=look.colours.lifting,
+            linewidth=0.15 * look.letter_pt,
+            label="_" if index else "tag",
+        )
 
 
 def _marks(axes: Axes, reading: Reading, look: Look) -> None:
@@ -59,26 +66,60 @@ def _marks(axes: Axes, reading: Reading, look: Look) -> None:
         label = "_" if index else ""
         meant = layout.to_page_mm(np.array(measured.mark.place_mm))
         found = layout.to_page_mm(measured.place_mm / reading.scale)
-        axes.plot(*np.array([meant, found]).T, color=colours.wanted, linewidth=0.12 * letter, zorder=2,
-                  label=label or "from where a mark was meant")
-        axes.plot(*found, linestyle="none", marker="o", markersize=0.55 * letter, markerfacecolor="none",
-                  markeredgecolor=colours.drawn, markeredgewidth=0.09 * letter, zorder=4, label=label or "mark")
+        axes.plot(
+            *np.array([meant, found]).T,
+            color=colours.wanted,
+            linewidth=0.12 * letter,
+            zorder=2,
+            label=label or "from where a mark was meant",
+        )
+        axes.plot(
+            *found,
+            linestyle="none",
+            marker="o",
+            markersize=0.55 * letter,
+            markerfacecolor="none",
+            markeredgecolor=colours.drawn,
+            markeredgewidth=0.09 * letter,
+            zorder=4,
+            label=label or "mark",
+        )
         _note(axes, f"{measured.mark.number}", found, colours.ink, look, to_left=True)
     contacts = [measured.contact for measured in reading.measured if measured.contact]
     for index, contact in enumerate(contacts):
         ends = layout.to_page_mm(contact.ends_mm)
-        axes.plot(*ends.T, color=colours.limit, linewidth=0.1 * letter, zorder=3,
-                  label="_" if index else "touch-down, and height in mm")
+        axes.plot(
+            *ends.T,
+            color=colours.limit,
+            linewidth=0.1 * letter,
+            zorder=3,
+            label="_" if index else "touch-down, and height in mm",
+        )
         _note(axes, f"{contact.height_mm:+.1f}".replace("-", "\N{MINUS SIGN}"), ends[1], colours.limit, look)
     for index, mark in enumerate(reading.missing):
         place = layout.to_page_mm(np.array(mark.place_mm))
-        axes.plot(*place, linestyle="none", marker="x", color=colours.limit, markersize=0.7 * letter, zorder=4,
-                  label="_" if index else "not found")
+        axes.plot(
+            *place,
+            linestyle="none",
+            marker="x",
+            color=colours.limit,
+            markersize=0.7 * letter,
+            zorder=4,
+            label="_" if index else "not found",
+        )
         _note(axes, f"{mark.number}", place, colours.limit, look, to_left=True)
 
 
 def _note(axes: Axes, words: str, place: FloatArray, colour: str, look: Look, *, to_left: bool = False) -> None:
     side = -1 if to_left else 1
-    axes.annotate(words, (place[0], place[1]), (0.45 * side * look.letter_pt, 0.0), textcoords="offset points",
-                  ha="right" if to_left else "left", va="center", fontsize=0.55 * look.letter_pt, color=colour,
-                  zorder=5)
+    axes.annotate(
+        words,
+        (place[0], place[1]),
+        (0.45 * side * look.letter_pt, 0.0),
+        textcoords="offset points",
+        ha="right" if to_left else "left",
+        va="center",
+        fontsize=0.55 * look.letter_pt,
+        color=colour,
+        zorder=5,
+    )

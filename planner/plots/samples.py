@@ -18,7 +18,8 @@ def require_joints(trajectory: Trajectory, arm: Arm) -> None:
     if trajectory.columns != arm.column_names:
         raise UsageError(
             f"the trajectory moves {', '.join(trajectory.columns)}, but arm '{arm.name}' has "
-            f"{', '.join(arm.column_names)}; it was planned for arm '{trajectory.arm}'")
+            f"{', '.join(arm.column_names)}; it was planned for arm '{trajectory.arm}'"
+        )
 
 
 def window_s(trajectory: Trajectory, from_s: float | None, to_s: float | None) -> tuple[float, float]:
@@ -30,9 +31,11 @@ def window_s(trajectory: Trajectory, from_s: float | None, to_s: float | None) -
     if to_s is not None:
         end_s = min(to_s, end_s)
     if trajectory.n_samples > 1 and end_s - begin_s < 1 / trajectory.rate_hz:
-        raise UsageError(f"there is nothing to show from {begin_s:g} to {end_s if to_s is None else to_s:g} s: "
-                         f"the trajectory lasts {trajectory.duration_s:.4g} s, a sample "
-                         f"{1 / trajectory.rate_hz:g} s")
+        raise UsageError(
+            f"there is nothing to show from {begin_s:g} to {end_s if to_s is None else to_s:g} s: "
+            f"the trajectory lasts {trajectory.duration_s:.4g} s, a sample "
+            f"{1 / trajectory.rate_hz:g} s"
+        )
     return begin_s, end_s
 
 

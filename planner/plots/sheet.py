@@ -55,18 +55,28 @@ class Sheet:
         heading = _printable(heading)
         longest = int((self.width - 2 * _EDGE) / _WIDEST)
         if len(heading) > longest:
-            heading = heading[:longest - 1] + "…"
+            heading = heading[: longest - 1] + "…"
         left, letter = _EDGE / self.width, self.look.letter_pt
         # a file name may hold dollar signs, which would be taken for a formula
-        self.figure.text(left, 1 - _EDGE / height, heading, va="top", size=1.35 * letter, weight="bold",
-                         parse_math=False)
-        self.figure.text(left, 1 - _REMARK / height, _printable(remark), va="top", color=self.look.colours.quiet,
-                         parse_math=False)
+        self.figure.text(
+            left, 1 - _EDGE / height, heading, va="top", size=1.35 * letter, weight="bold", parse_math=False
+        )
+        self.figure.text(
+            left, 1 - _REMARK / height, _printable(remark), va="top", color=self.look.colours.quiet, parse_math=False
+        )
         if legend:
             self.figure.legend(
-                handles=list(legend), loc="upper left", ncols=n_columns, borderaxespad=0, borderpad=0, handlelength=1.8,
-                handletextpad=0.6, columnspacing=1.6, labelspacing=0.5,
-                bbox_to_anchor=(left, 1 - _LEGEND / height))
+                handles=list(legend),
+                loc="upper left",
+                ncols=n_columns,
+                borderaxespad=0,
+                borderpad=0,
+                handlelength=1.8,
+                handletextpad=0.6,
+                columnspacing=1.6,
+                labelspacing=0.5,
+                bbox_to_anchor=(left, 1 - _LEGEND / height),
+            )
         return self.figure
 
     def _columns(self, labels: Sequence[str]) -> int:

@@ -50,8 +50,14 @@ def path_speeds(arm: Arm, joints: FloatArray, tip_mm: FloatArray, rate_hz: float
     with np.errstate(divide="ignore"):
         allowed = arm.max_velocity / np.abs(slope)
     middle_mm = (at_mm[kept[1:]] + at_mm[kept[:-1]]) / 2
-    return PathSpeeds(middle_mm, way_mm / taken_s, allowed.min(axis=1, initial=np.inf), allowed.argmin(axis=1),
-                      at_mm[kept[1:-1]], _acceleration_limit(arm, slope, np.diff(middle_mm)))
+    return PathSpeeds(
+        middle_mm,
+        way_mm / taken_s,
+        allowed.min(axis=1, initial=np.inf),
+        allowed.argmin(axis=1),
+        at_mm[kept[1:-1]],
+        _acceleration_limit(arm, slope, np.diff(middle_mm)),
+    )
 
 
 def _acceleration_limit(arm: Arm, slope: FloatArray, between_mm: FloatArray) -> FloatArray:

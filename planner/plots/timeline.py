@@ -22,8 +22,15 @@ _N_SPANS = 700
 _BAR = 0.76  # of a row
 
 
-def plot_timeline(trajectory: Trajectory, tip_mm: FloatArray, clearance_mm: float, look: Look = USUAL, *,
-                  from_s: float | None = None, to_s: float | None = None) -> Figure:
+def plot_timeline(
+    trajectory: Trajectory,
+    tip_mm: FloatArray,
+    clearance_mm: float,
+    look: Look = USUAL,
+    *,
+    from_s: float | None = None,
+    to_s: float | None = None,
+) -> Figure:
     """A row of bars for each phase over time with its total beside it, above the height of the tip.
 
     Where a phase comes more than some hundreds of times, its bars are of equal parts of the time, paler where it takes
@@ -48,29 +55,51 @@ def plot_timeline(trajectory: Trajectory, tip_mm: FloatArray, clearance_mm: floa
         _draw_totals(totals, totals_s, look)
         rows.tick_params(labelbottom=False)
         height.set_xlim(begin_s, max(last, first + 1) / trajectory.rate_hz)
-        n_strokes = len(np.unique(trajectory.stroke[first:last + 1][trajectory.pen[first:last + 1]]))
-        remark = (f"{counted(n_strokes, 'stroke')} in {totals_s.sum():.4g} s"
-                  + (f", {begin_s:g} to {last / trajectory.rate_hz:.6g} s of {trajectory.duration_s:.4g} s"
-                     if last - first < trajectory.n_samples - 1 else "")
-                  + f" on {trajectory.arm}; lifting and lowering are below the clearance of {clearance_mm:g} mm")
+        n_strokes = len(np.unique(trajectory.stroke[first : last + 1][trajectory.pen[first : last + 1]]))
+        remark = (
+            f"{counted(n_strokes, 'stroke')} in {totals_s.sum():.4g} s"
+            + (
+                f", {begin_s:g} to {last / trajectory.rate_hz:.6g} s of {trajectory.duration_s:.4g} s"
+                if last - first < trajectory.n_samples - 1
+                else ""
+            )
+            + f" on {trajectory.arm}; lifting and lowering are below the clearance of {clearance_mm:g} mm"
+        )
         return sheet.finish(trajectory.drawing or "trajectory", remark, height.get_legend_handles_labels()[0], 1.2)
 
 
 def _colour(phase: Phase, look: Look) -> str:
     colours = look.colours
-    return {Phase.LOWERING: colours.lowering, Phase.RESTING: colours.resting, Phase.DRAWING: colours.drawn,
-            Phase.LIFTING: colours.lifting, Phase.TRAVELLING: colours.travel}[phase]
+    return {
+        Phase.LOWERING: colours.lowering,
+        Phase.RESTING: colours.resting,
+        Phase.DRAWING: colours.drawn,
+        Phase.LIFTING: colours.lifting,
+        Phase.TRAVELLING: colours.travel,
+    }[phase]
 
 
 def _draw_rows(axes: Axes, phases: IntArray, rate_hz: float, begin_s: float, look: Look) -> None:
     for phase in Phase:
         spans = spans_where(phases == phase, rate_hz, _N_SPANS)
         start, end, share = spans[:, 0] + begin_s, spans[:, 1] + begin_s, spans[:, 2]
-        corners = np.stack([np.column_stack((x, np.full(len(spans), phase + y))) for x, y in (
-            (start, -_BAR / 2), (end, -_BAR / 2), (end, _BAR / 2), (start, _BAR / 2))], axis=1)
-        axes.add_collection(PolyCollection(
-            list(corners), facecolors=to_rgba_array([_colour(phase, look)] * len(spans), alpha=list(share)),
-            linewidths=0, snap=False, label=phase.name.lower()), autolim=False)
+        corners = np.stack(
+            [
+                np.column_stack((x, np.full(len(spans), phase + y)))
+                for x, y in ((start, -_BAR / 2), (end, -_BAR / 2), (end, _BAR / 2), (start, _BAR / 2))
+            ],
+            axis=1,
+        )
+        axes.add_collection(
+            PolyCollection(
+                list(corners),
+                facecolors=to_rgba_array([_colour(phase, look)] * len(spans), alpha=list(share)),
+                linewidths=0,
+                snap=False,
+                label=phase.name.lower(),
+            ),
+            autolim=False,
+        )
     _name_rows(axes)
 
 
@@ -78,8 +107,13 @@ def _draw_totals(axes: Axes, totals_s: FloatArray, look: Look) -> None:
     whole = max(float(totals_s.sum()), 1e-9)
     axes.barh(range(len(Phase)), totals_s, height=_BAR, color=[_colour(phase, look) for phase in Phase])
     for phase in Phase:
-        axes.annotate(f"{totals_s[phase]:.2f} s, {100 * totals_s[phase] / whole:.1f} %", (totals_s[phase], phase),
-                      xytext=(0.4 * look.letter_pt, 0), textcoords="offset points", va="center")
+        axes.annotate(
+            f"{totals_s[phase]:.2f} s, {100 * totals_s[phase] / whole:.1f} %",
+            (totals_s[phase], phase),
+            xytext=(0.4 * look.letter_pt, 0),
+            textcoords="offset points",
+            va="center",
+        )
     axes.set_xlim(0.0, max(float(totals_s.max()), 1e-9))
     axes.set_xlabel("total (s)")
     _name_rows(axes)
@@ -92,14 +126,21 @@ def _name_rows(axes: Axes) -> None:
     axes.tick_params(axis="y", length=0)
 
 
-def _draw_height(axes: Axes, trajectory: Trajectory, tip_mm: FloatArray, clearance_mm: float,
-                 part: tuple[int, int], look: Look) -> None:
+def _draw_height(
+    axes: Axes, trajectory: Trajectory, tip_mm: FloatArray, clearance_mm: float, part: tuple[int, int], look: Look
+) -> None:
     shown = slice(part[0], part[1] + 1)
     times_s, heights_mm = np.arange(part[0], part[1] + 1) / trajectory.rate_hz, tip_mm[shown, 2]
-    axes.plot(*min_max_envelope(times_s, heights_mm, _N_SPANS), color=look.colours.drawn, linewidth=0.8, zorder=3,
-              label="height of the tip")
-    axes.axhline(clearance_mm, color=look.colours.quiet, linewidth=0.8, linestyle=(0, (2, 2)), zorder=2,
-                 label="clearance height")
+    axes.plot(
+        *min_max_envelope(times_s, heights_mm, _N_SPANS),
+        color=look.colours.drawn,
+        linewidth=0.8,
+        zorder=3,
+        label="height of the tip",
+    )
+    axes.axhline(
+        clearance_mm, color=look.colours.quiet, linewidth=0.8, linestyle=(0, (2, 2)), zorder=2, label="clearance height"
+    )
     top = max(float(heights_mm.max()), clearance_mm)
     axes.set_ylim(min(-0.05 * top, float(heights_mm.min())), 1.08 * top)
     axes.set_xlabel("time (s)")

@@ -12,20 +12,25 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from planner.arms.paper_map import PaperMap
 from planner.arrays import FloatArray
 from planner.plots.look import LIMIT_DASHES, USUAL, Look
 from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, canvas_outline, half_ring, place_axes, view_mm
 from planner.plots.sheet import Sheet
 from planner.settings import CanvasKind
+from planner.workspace.paper_map import PaperMap
 
 _BAR, _BAR_GAP, _BAR_LABELS, _BETWEEN = 1.2, 1.2, 5.6, 3.4  # em
 _TITLE = 1.6
 _N_COLOURS = 256
 
 
-def plot_workspace(name: str, figures: PaperMap, canvases_mm: Mapping[CanvasKind, FloatArray],
-                   reach_mm: tuple[float, float], look: Look = USUAL) -> Figure:
+def plot_workspace(
+    name: str,
+    figures: PaperMap,
+    canvases_mm: Mapping[CanvasKind, FloatArray],
+    reach_mm: tuple[float, float],
+    look: Look = USUAL,
+) -> Figure:
     """The ring with the canvases, and beside it two maps, all in arm millimetres: manipulability in parts of its
     greatest on the paper, and the tip's error along the paper per degree (or mm) of error of the joints.
 
@@ -36,8 +41,10 @@ def plot_workspace(name: str, figures: PaperMap, canvases_mm: Mapping[CanvasKind
     slimness = float((high[0] - low[0]) / (high[1] - low[1]))
     greatest = float(np.nanmax(figures.manipulability))
     good_is_bright = look.colours.colour_map(_N_COLOURS)
-    maps = ((figures.manipulability / greatest, "manipulability, of its greatest", good_is_bright),
-            (figures.sideways_error_mm, "tip error (mm per degree, rms)", good_is_bright.reversed()))
+    maps = (
+        (figures.manipulability / greatest, "manipulability, of its greatest", good_is_bright),
+        (figures.sideways_error_mm, "tip error (mm per degree, rms)", good_is_bright.reversed()),
+    )
     with look.style():
         sheet = Sheet(look)
         # the maps are as high together as the ring is alone
@@ -61,29 +68,43 @@ def plot_workspace(name: str, figures: PaperMap, canvases_mm: Mapping[CanvasKind
                 axes.add_patch(canvas)
                 canvas.set_path_effects([withStroke(linewidth=2.2, foreground="white")])  # seen on dark and light
         error = figures.sideways_error_mm
-        remark = (f"reach {reach_mm[0]:.0f} to {reach_mm[1]:.0f} mm, seen from behind the base; "
-                  f"a degree of error in a joint is {np.nanmin(error):.2f} to {np.nanmax(error):.2f} mm, rms")
+        remark = (
+            f"reach {reach_mm[0]:.0f} to {reach_mm[1]:.0f} mm, seen from behind the base; "
+            f"a degree of error in a joint is {np.nanmin(error):.2f} to {np.nanmax(error):.2f} mm, rms"
+        )
         return sheet.finish(f"workspace of {name}", remark, ring.get_legend_handles_labels()[0], _TITLE)
 
 
-def _draw_canvases(axes: Axes, canvases_mm: Mapping[CanvasKind, FloatArray], reach_mm: tuple[float, float], look: Look
-                   ) -> None:
+def _draw_canvases(
+    axes: Axes, canvases_mm: Mapping[CanvasKind, FloatArray], reach_mm: tuple[float, float], look: Look
+) -> None:
     colours = look.colours
     axes.add_patch(half_ring(reach_mm, colours))
-    styles = {CanvasKind.DOCUMENTED: (colours.limit, LIMIT_DASHES), CanvasKind.OPTIMAL: (colours.lifting, (0, (1, 1))),
-              CanvasKind.USABLE: (colours.drawn, "solid")}
+    styles = {
+        CanvasKind.DOCUMENTED: (colours.limit, LIMIT_DASHES),
+        CanvasKind.OPTIMAL: (colours.lifting, (0, (1, 1))),
+        CanvasKind.USABLE: (colours.drawn, "solid"),
+    }
     for kind, corners in canvases_mm.items():
         edge, dashes = styles[kind]
         height_mm, width_mm = np.ptp(corners, axis=0)
         canvas = canvas_outline(corners, colours, face="none", edge=edge)
-        canvas.set(linestyle=dashes, linewidth=1.6, zorder=2,
-                   label=f"{kind} canvas, {width_mm:.0f} × {height_mm:.0f} mm")
+        canvas.set(
+            linestyle=dashes, linewidth=1.6, zorder=2, label=f"{kind} canvas, {width_mm:.0f} × {height_mm:.0f} mm"
+        )
         axes.add_patch(canvas)
 
 
 def _draw_map(sheet: Sheet, axes: Axes, figures: PaperMap, values: FloatArray, colour_map: Colormap) -> None:
     """A map whose cells have the mean of their corners, and none where one corner is out of reach."""
     cells = (values[:-1, :-1] + values[1:, :-1] + values[:-1, 1:] + values[1:, 1:]) / 4
-    mesh = axes.pcolormesh(figures.y_mm, figures.x_mm, np.ma.masked_invalid(cells), shading="flat", rasterized=True,
-                           cmap=colour_map, zorder=0.5)
+    mesh = axes.pcolormesh(
+        figures.y_mm,
+        figures.x_mm,
+        np.ma.masked_invalid(cells),
+        shading="flat",
+        rasterized=True,
+        cmap=colour_map,
+        zorder=0.5,
+    )
     sheet.figure.colorbar(mesh, cax=sheet.beside(axes, _BAR_GAP, _BAR), ticks=MaxNLocator(4))

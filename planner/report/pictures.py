@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from planner.arms.arm import Arm
-from planner.arms.canvas import canvas_of
-from planner.arms.paper_map import paper_map
 from planner.arrays import FloatArray
 from planner.checking.coverage import distance_from_drawing
 from planner.drawing.drawing import Drawing
@@ -25,6 +23,8 @@ from planner.plots.timeline import plot_timeline
 from planner.plots.workspace import plot_workspace
 from planner.settings import PlanSettings
 from planner.trajectory import Trajectory
+from planner.workspace.canvas import canvas_of
+from planner.workspace.paper_map import paper_map
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,26 +41,46 @@ class Picture:
     sources: Mapping[Theme, str]
 
 
-def pictures(trajectory: Trajectory, arm: Arm, drawing: Drawing, tip_mm: FloatArray, reach_mm: tuple[float, float],
-             settings: PlanSettings) -> Iterator[Picture]:
+def pictures(
+    trajectory: Trajectory,
+    arm: Arm,
+    drawing: Drawing,
+    tip_mm: FloatArray,
+    reach_mm: tuple[float, float],
+    settings: PlanSettings,
+) -> Iterator[Picture]:
     """All pictures, in the order of the page. tip_mm: (n_samples, 3). reach_mm: inner and outer radius on the paper."""
     lift_mm = arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
     canvas_mm = canvas_of(arm, settings.canvas, lift_mm).corners_arm_mm
     drawn = joined_while_drawing(trajectory)
-    yield _picture("Drawing", "What the pen draws, over what was to be drawn, on the paper in front of the arm.",
-                   lambda look: plot_drawing(trajectory, tip_mm, drawing, canvas_mm, reach_mm, look))
+    yield _picture(
+        "Drawing",
+        "What the pen draws, over what was to be drawn, on the paper in front of the arm.",
+        lambda look: plot_drawing(trajectory, tip_mm, drawing, canvas_mm, reach_mm, look),
+    )
     if drawn.any():
         error_mm = distance_from_drawing(trajectory, drawing, tip_mm)
-        yield _picture("Speed", "The speed of the pen along its path. It slows down in corners and where joints are at "
-                       "their limits.", lambda look: plot_speed(trajectory, tip_mm, canvas_mm, reach_mm, look))
-        yield _picture("Error", "The distance of the pen from the drawing, on the paper and along the way.",
-                       lambda look: plot_error(trajectory, tip_mm, error_mm, settings.tolerance_mm, canvas_mm, reach_mm,
-                                               look))
-    yield _picture("Time", "When the arm lowers the pen, rests, draws, lifts and travels, told from the height of the "
-                   "tip at the samples, as in the account above.",
-                   lambda look: plot_timeline(trajectory, tip_mm, arm.pen.clearance_mm, look))
-    yield _picture("Joints", "Position, velocity, acceleration and jerk of every joint, with the arm's limits.",
-                   lambda look: plot_profiles(trajectory, arm, look))
+        yield _picture(
+            "Speed",
+            "The speed of the pen along its path. It slows down in corners and where joints are at their limits.",
+            lambda look: plot_speed(trajectory, tip_mm, canvas_mm, reach_mm, look),
+        )
+        yield _picture(
+            "Error",
+            "The distance of the pen from the drawing, on the paper and along the way.",
+            lambda look: plot_error(trajectory, tip_mm, error_mm, settings.tolerance_mm, canvas_mm, reach_mm, look),
+        )
+    yield _picture(
+        "Time",
+        "When the arm lowers the pen, rests, draws, lifts and travels, told from the height of the "
+        "tip at the samples, as in the account above.",
+        lambda look: plot_timeline(trajectory, tip_mm, arm.pen.clearance_mm, look),
+    )
+    yield _picture(
+        "Joints",
+        "Position, velocity, acceleration and jerk of every joint, with the arm's limits.",
+        lambda look: plot_profiles(trajectory, arm, look),
+    )
     maps = paper_map(arm)
 
     def workspace(look: Look) -> Figure:
@@ -69,8 +89,12 @@ def pictures(trajectory: Trajectory, arm: Arm, drawing: Drawing, tip_mm: FloatAr
         figure.axes[0].plot(lines[:, 1], lines[:, 0], color=look.colours.drawn, linewidth=0.5, zorder=3)
         return figure
 
-    yield _picture("Workspace", "The drawing on the canvas within the arm's reach; how freely the pen moves there, and "
-                   "how far it strays where a joint is off.", workspace)
+    yield _picture(
+        "Workspace",
+        "The drawing on the canvas within the arm's reach; how freely the pen moves there, and "
+        "how far it strays where a joint is off.",
+        workspace,
+    )
 
 
 def _picture(heading: str, caption: str, figure: Callable[[Look], Figure]) -> Picture:

@@ -13,7 +13,7 @@ from typing import IO, cast
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.checking.chain import chain_poses
-from planner.checking.verdict import Verdict
+from planner.checking.check_result import CheckResult
 from planner.drawing.drawing import Drawing
 from planner.errors import OutputError
 from planner.plots.look import Theme
@@ -42,7 +42,7 @@ class Planned:
     trajectory: Trajectory
     arm: Arm
     drawing: Drawing
-    verdict: Verdict
+    check_result: CheckResult
     reach_mm: tuple[float, float]
 
 
@@ -69,65 +69,86 @@ def report_page(planned: Planned) -> Markup:
         element("meta", http_equiv="Content-Security-Policy", content=_NEVER_SENT),
         element("meta", name="viewport", content="width=device-width, initial-scale=1"),
         element("title", f"{heading} on {planned.arm.name}"),
-        element("style", Markup(files(__package__).joinpath("page.css").read_text(encoding="utf-8"))))
+        element("style", Markup(files(__package__).joinpath("page.css").read_text(encoding="utf-8"))),
+    )
     body = element(
         "body",
         element("h1", heading),
         element("p", f"on {planned.arm.name}, by method {trajectory.method}", class_="quiet"),
-        _verdict_in_brief(planned.verdict),
+        _check_result_in_brief(planned.check_result),
         _facts(summary),
         _warnings(summary.warnings),
         section("Pictures", *_figures(planned, tip_mm)),
         section("Joints", *_joints(trajectory, planned.arm)),
         section("Strokes", *_strokes(stroke_figures(trajectory, tip_mm), planned.settings.speed_mm_s)),
-        section("Check", *_check(planned.verdict)),
-        section("How it was made", *_making(planned)))
+        section("Check", *_check(planned.check_result)),
+        section("How it was made", *_making(planned)),
+    )
     return Markup(f"<!doctype html>\n{element('html', head, body, lang='en')}\n")
 
 
-def _verdict_in_brief(verdict: Verdict) -> Markup:
-    n_faults = len(verdict.faults)
-    told = "check passed" if verdict.passed else f"check failed: {n_faults} fault{'' if n_faults == 1 else 's'}"
-    return element("p", told, class_=f"verdict {'good' if verdict.passed else 'bad'}")
+def _check_result_in_brief(check_result: CheckResult) -> Markup:
+    n_faults = len(check_result.faults)
+    told = "check passed" if check_result.passed else f"check failed: {n_faults} fault{'' if n_faults == 1 else 's'}"
+    return element("p", told, class_=f"check result {'good' if check_result.passed else 'bad'}")
 
 
 def _facts(summary: PlanSummary) -> Markup:
     width_mm, height_mm = summary.size_mm
-    return joined((
-        definitions((
-            ("takes", clock(summary.duration_s)),
-            ("on paper", f"{width_mm:.1f} × {height_mm:.1f} mm"),
-            ("of its size on the page", f"{summary.scale:.3g} times"),
-            ("strokes", str(summary.n_strokes)),
-            ("of them taps", str(summary.n_taps)),
-            ("drawn", f"{summary.drawn_mm / 1000:.2f} m"),
-            ("travelled, pen up", f"{summary.travelled_mm / 1000:.2f} m"),
-            ("mean speed on paper", f"{summary.mean_speed_mm_s:.0f} mm/s"),
-            ("samples", f"{summary.n_samples} at {summary.rate_hz:g} Hz"),
-        ), class_="facts"),
-        table(("phase", "time (s)", "share"),
-              [(name, f"{seconds:.2f}", f"{100 * share:.1f} %") for name, seconds, share in summary.phases.shares()])))
+    return joined(
+        (
+            definitions(
+                (
+                    ("takes", clock(summary.duration_s)),
+                    ("on paper", f"{width_mm:.1f} × {height_mm:.1f} mm"),
+                    ("of its size on the page", f"{summary.scale:.3g} times"),
+                    ("strokes", str(summary.n_strokes)),
+                    ("of them taps", str(summary.n_taps)),
+                    ("drawn", f"{summary.drawn_mm / 1000:.2f} m"),
+                    ("travelled, pen up", f"{summary.travelled_mm / 1000:.2f} m"),
+                    ("mean speed on paper", f"{summary.mean_speed_mm_s:.0f} mm/s"),
+                    ("samples", f"{summary.n_samples} at {summary.rate_hz:g} Hz"),
+                ),
+                class_="facts",
+            ),
+            table(
+                ("phase", "time (s)", "share"),
+                [(name, f"{seconds:.2f}", f"{100 * share:.1f} %") for name, seconds, share in summary.phases.shares()],
+            ),
+        )
+    )
 
 
 def _warnings(warnings: Sequence[str]) -> Markup:
     if not warnings:
         return section("Warnings", element("p", "None.", class_="quiet"))
-    return section(f"Warnings ({len(warnings)})",
-                   element("ul", *(element("li", warning) for warning in warnings), class_="warnings"))
+    return section(
+        f"Warnings ({len(warnings)})",
+        element("ul", *(element("li", warning) for warning in warnings), class_="warnings"),
+    )
 
 
 def _figures(planned: Planned, tip_mm: FloatArray) -> list[Markup]:
     return [
-        element("figure",
-                element("h3", picture.heading),
-                element("div", element(
+        element(
+            "figure",
+            element("h3", picture.heading),
+            element(
+                "div",
+                element(
                     "picture",
                     element("source", media="(prefers-color-scheme: dark)", srcset=picture.sources[Theme.DARK]),
-                    element("img", src=picture.sources[Theme.LIGHT], alt=f"{picture.heading}: {picture.caption}")),
-                    class_="scrolls", tabindex="0"),
-                element("figcaption", picture.caption))
-        for picture in pictures(planned.trajectory, planned.arm, planned.drawing, tip_mm, planned.reach_mm,
-                                planned.settings)]
+                    element("img", src=picture.sources[Theme.LIGHT], alt=f"{picture.heading}: {picture.caption}"),
+                ),
+                class_="scrolls",
+                tabindex="0",
+            ),
+            element("figcaption", picture.caption),
+        )
+        for picture in pictures(
+            planned.trajectory, planned.arm, planned.drawing, tip_mm, planned.reach_mm, planned.settings
+        )
+    ]
 
 
 def _joints(trajectory: Trajectory, arm: Arm) -> list[Markup]:
@@ -136,10 +157,18 @@ def _joints(trajectory: Trajectory, arm: Arm) -> list[Markup]:
         return joined((f"{100 * largest.share:.1f} %", element("small", f"{largest.time_s:.2f} s, {where}")))
 
     return [
-        element("p", "The largest share of each limit that a joint uses, and when; of a position, how far from the "
-                "middle of its range towards an end. Derivatives are differences of the samples."),
-        table(("joint", *QUANTITIES), [(joint.name, *map(told, row)) for joint, row
-                                       in zip(arm.joints, largest_shares(trajectory, arm), strict=True)]),
+        element(
+            "p",
+            "The largest share of each limit that a joint uses, and when; of a position, how far from the "
+            "middle of its range towards an end. Derivatives are differences of the samples.",
+        ),
+        table(
+            ("joint", *QUANTITIES),
+            [
+                (joint.name, *map(told, row))
+                for joint, row in zip(arm.joints, largest_shares(trajectory, arm), strict=True)
+            ],
+        ),
     ]
 
 
@@ -147,33 +176,66 @@ def _strokes(figures: StrokeFigures, speed_mm_s: float) -> list[Markup]:
     lost_s = figures.lost_s(speed_mm_s)
     costly = (-lost_s).argsort(kind="stable")[:_N_STROKES].tolist()
     rows = [
-        (str(stroke), f"{begins:.2f}", f"{lasts:.2f}", f"{lost:.2f}",
-         *((f"{length:.2f}", f"{mean:.1f}", f"{top:.1f}") if length > 0 else ("tap", "", "")))
+        (
+            str(stroke),
+            f"{begins:.2f}",
+            f"{lasts:.2f}",
+            f"{lost:.2f}",
+            *((f"{length:.2f}", f"{mean:.1f}", f"{top:.1f}") if length > 0 else ("tap", "", "")),
+        )
         for stroke, begins, lasts, lost, length, mean, top in zip(
-            figures.index.tolist(), figures.begins_s.tolist(), figures.duration_s.tolist(), lost_s.tolist(),
-            figures.length_mm.tolist(), figures.mean_speed_mm_s.tolist(), figures.top_speed_mm_s.tolist(), strict=True)]
+            figures.index.tolist(),
+            figures.begins_s.tolist(),
+            figures.duration_s.tolist(),
+            lost_s.tolist(),
+            figures.length_mm.tolist(),
+            figures.mean_speed_mm_s.tolist(),
+            figures.top_speed_mm_s.tolist(),
+            strict=True,
+        )
+    ]
     head = ("stroke", "begins (s)", "takes (s)", "loses (s)", "length (mm)", "mean (mm/s)", "fastest (mm/s)")
     return [
-        element("p", f"A stroke loses the time that it takes beyond its length at {speed_mm_s:g} mm/s, the cap on the "
-                "pen's speed: in corners, at the limits of joints, and at rest."),
-        element("h3", f"The first {min(_N_STROKES, len(rows))} of {len(rows)}"), table(head, rows[:_N_STROKES]),
-        element("h3", f"The {len(costly)} that lose most"), table(head, [rows[place] for place in costly]),
+        element(
+            "p",
+            f"A stroke loses the time that it takes beyond its length at {speed_mm_s:g} mm/s, the cap on the "
+            "pen's speed: in corners, at the limits of joints, and at rest.",
+        ),
+        element("h3", f"The first {min(_N_STROKES, len(rows))} of {len(rows)}"),
+        table(head, rows[:_N_STROKES]),
+        element("h3", f"The {len(costly)} that lose most"),
+        table(head, [rows[place] for place in costly]),
     ]
 
 
-def _check(verdict: Verdict) -> list[Markup]:
+def _check(check_result: CheckResult) -> list[Markup]:
     """Faults first, as they are what one has come for."""
     rows = []
-    for finding in sorted(verdict.findings, key=lambda finding: finding.passed):
-        mark, kind = (("note", "quiet") if finding.is_note else ("ok", "good") if finding.passed else ("fault", "bad"))
+    for finding in sorted(check_result.findings, key=lambda finding: finding.passed):
+        mark, kind = ("note", "quiet") if finding.is_note else ("ok", "good") if finding.passed else ("fault", "bad")
         joint = finding.place.joint if finding.place is not None and finding.place.joint else ""
-        figures = [value if value is None else f"{round(value, 9) + 0.0:.5g}"
-                   for value in (finding.worst, finding.limit)]
-        rows.append((element("span", mark, class_=kind), finding.check, joint, *(text or "" for text in figures),
-                     finding.unit, finding.remark, str(finding.place or "")))
+        figures = [
+            value if value is None else f"{round(value, 9) + 0.0:.5g}" for value in (finding.worst, finding.limit)
+        ]
+        rows.append(
+            (
+                element("span", mark, class_=kind),
+                finding.check,
+                joint,
+                *(text or "" for text in figures),
+                finding.unit,
+                finding.remark,
+                str(finding.place or ""),
+            )
+        )
     return [
-        element("p", "By mathematics of the check's own, at the samples and between them, against the arm's limits and "
-                "the drawing. ", element("code", "plan check"), " tells the same of the file."),
+        element(
+            "p",
+            "By mathematics of the check's own, at the samples and between them, against the arm's limits and "
+            "the drawing. ",
+            element("code", "plan check"),
+            " tells the same of the file.",
+        ),
         table(("", "law", "joint", "worst", "limit", "unit", "remark", "place"), rows, n_texts=8),
     ]
 
@@ -183,21 +245,29 @@ def _making(planned: Planned) -> list[Markup]:
     weights = ", ".join(f"{name} {value:g}" for name, value in asdict(settings.weights).items())
     lift_mm = planned.arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
     used = [
-        ("arm", f"{planned.arm.name}: {planned.arm.source}"), ("method", settings.method.value), ("weights", weights),
-        ("rate", f"{settings.rate_hz:g} Hz"), ("tolerance", f"{settings.tolerance_mm:g} mm"),
+        ("arm", f"{planned.arm.name}: {planned.arm.source}"),
+        ("method", settings.method.value),
+        ("weights", weights),
+        ("rate", f"{settings.rate_hz:g} Hz"),
+        ("tolerance", f"{settings.tolerance_mm:g} mm"),
         ("pen's speed on paper, at most", f"{settings.speed_mm_s:g} mm/s"),
         ("lowering, at most", f"{settings.lowering_speed_mm_s:g} mm/s"),
         ("rest before a stroke", f"{settings.dwell_s:g} s"),
-        ("lift", f"{lift_mm:g} mm"), ("canvas", settings.canvas.value), ("scaled to the canvas", _yes(settings.fit)),
-        ("margin", f"{settings.margin_mm:g} mm"), ("turned by", f"{settings.rotate_deg:g}°"),
+        ("lift", f"{lift_mm:g} mm"),
+        ("canvas", settings.canvas.value),
+        ("scaled to the canvas", _yes(settings.fit)),
+        ("margin", f"{settings.margin_mm:g} mm"),
+        ("turned by", f"{settings.rotate_deg:g}°"),
         ("out of reach left out", _yes(settings.skip_unreachable)),
         ("svg_to_arm_mm", " ".join(f"{value:.6g}" for value in planned.trajectory.svg_to_arm_mm)),
     ]
     made_with = [("Python", platform.python_version()), *((name, version(name)) for name in _MADE_WITH)]
     return [
         element("pre", element("code", planned.command)),
-        element("h3", "Settings"), table(("setting", "value"), used, n_texts=2),
-        element("h3", "Versions"), table(("package", "version"), made_with, n_texts=2),
+        element("h3", "Settings"),
+        table(("setting", "value"), used, n_texts=2),
+        element("h3", "Versions"),
+        table(("package", "version"), made_with, n_texts=2),
     ]
 
 

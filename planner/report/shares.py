@@ -31,8 +31,12 @@ def largest_shares(trajectory: Trajectory, arm: Arm) -> list[list[LargestShare]]
     for order, limit in enumerate(limits):
         times_s, values = finite_difference(trajectory.positions - middle, trajectory.rate_hz, order)
         place = np.argmax(np.abs(values), axis=0)
-        columns.append([_share(trajectory, abs(float(values[row, joint])) / float(limit[joint]), float(times_s[row]))
-                        for joint, row in enumerate(place.tolist())])
+        columns.append(
+            [
+                _share(trajectory, abs(float(values[row, joint])) / float(limit[joint]), float(times_s[row]))
+                for joint, row in enumerate(place.tolist())
+            ]
+        )
     return [list(row) for row in zip(*columns, strict=True)]
 
 

@@ -44,7 +44,7 @@ _KEPT_SLACK = 0.1
 def _powers(fractions: FloatArray, derivative: int) -> FloatArray:
     """(n, 4) a derivative of 1, f, f^2, f^3 at the fractions."""
     f, one, zero = fractions, np.ones_like(fractions), np.zeros_like(fractions)
-    rows = ((one, f, f ** 2, f ** 3), (zero, one, 2 * f, 3 * f ** 2), (zero, zero, 2 * one, 6 * f))
+    rows = ((one, f, f**2, f**3), (zero, one, 2 * f, 3 * f**2), (zero, zero, 2 * one, 6 * f))
     return np.stack(rows[derivative], axis=1)
 
 
@@ -61,14 +61,22 @@ class Solver:
         self.path_of_cell = np.repeat(np.arange(self.n_paths), n_cells)
         self.path_of_unknown = np.repeat(np.arange(self.n_paths), count)
         self.first_cell = starts_of(n_cells)[:-1]
-        self.by_cap = problem.rate_cap ** -2.0
+        self.by_cap = problem.rate_limit**-2.0
         p = problem
-        self.acceleration = np.stack([
-            _form(FRACTIONS[k], p.second_by_acceleration[k], 0.5 * p.first_by_acceleration[k], 0.0)
-            for k in _ACCELERATION_POINTS], axis=1)
-        self.jerk = np.stack([
-            _form(fraction, p.third_by_jerk[k], 1.5 * p.second_by_jerk[k], 0.5 * p.first_by_jerk[k])
-            for k, fraction in enumerate(FRACTIONS)], axis=1)
+        self.acceleration = np.stack(
+            [
+                _form(FRACTIONS[k], p.second_by_acceleration[k], 0.5 * p.first_by_acceleration[k], 0.0)
+                for k in _ACCELERATION_POINTS
+            ],
+            axis=1,
+        )
+        self.jerk = np.stack(
+            [
+                _form(fraction, p.third_by_jerk[k], 1.5 * p.second_by_jerk[k], 0.5 * p.first_by_jerk[k])
+                for k, fraction in enumerate(FRACTIONS)
+            ],
+            axis=1,
+        )
         per_cell = len(FRACTIONS) + 2 * sum(form[0, ..., 0].size for form in (self.acceleration, self.jerk))
         self.n_limits = n_cells * per_cell
 
@@ -76,8 +84,9 @@ class Solver:
         """(cells,) the greatest b that each cell allows if it stays the same throughout."""
         p = self.problem
         with np.errstate(divide="ignore"):
-            greatest = np.minimum(p.rate_cap.min(axis=0) ** 2,
-                                  1 / np.abs(p.second_by_acceleration).max(axis=(0, 1), initial=0.0))
+            greatest = np.minimum(
+                p.rate_limit.min(axis=0) ** 2, 1 / np.abs(p.second_by_acceleration).max(axis=(0, 1), initial=0.0)
+            )
             least: FloatArray = np.minimum(greatest, np.abs(p.third_by_jerk).max(axis=(0, 1)) ** (-2 / 3))
         return least
 
@@ -126,13 +135,15 @@ class Solver:
     def total(self, *per_cell: FloatArray) -> FloatArray:
         """(n_paths,) sums over all that belongs to a path."""
         sums: FloatArray = np.add.reduceat(
-            sum(part.reshape(-1, part.shape[-1]).sum(axis=0) for part in per_cell), self.first_cell)
+            sum(part.reshape(-1, part.shape[-1]).sum(axis=0) for part in per_cell), self.first_cell
+        )
         return sums
 
     def smallest(self, per_cell: FloatArray) -> FloatArray:
         """(n_paths,) minima over all that belongs to a path."""
         minima: FloatArray = np.minimum.reduceat(
-            per_cell.reshape(-1, per_cell.shape[-1]).min(axis=0, initial=np.inf), self.first_cell)
+            per_cell.reshape(-1, per_cell.shape[-1]).min(axis=0, initial=np.inf), self.first_cell
+        )
         return minima
 
     def times_s(self, value: FloatArray) -> FloatArray:
@@ -146,7 +157,7 @@ class Solver:
         multipliers, slacks = state.multipliers, state.slacks
         pushes = [mu / slack for slack in slacks]  # the multipliers that the barrier wants
         stiffness = [multiplier / slack for multiplier, slack in zip(multipliers, slacks, strict=True)]
-        root = value ** -1.5
+        root = value**-1.5
         room = state.allowed * root[:, None]
         direction, failed = self.direction(state, root, pushes, stiffness)
         stuck = state.stuck | failed
@@ -155,8 +166,10 @@ class Solver:
         d_value, d_acceleration, d_jerk = self.values(direction)
         d_room = -0.5 * room * d_value[:, None]
         d_slacks = [-d_value * self.by_cap, -d_acceleration, d_acceleration, d_room - d_jerk, d_room + d_jerk]
-        d_multipliers = [push - multiplier - weight * d for push, multiplier, weight, d
-                         in zip(pushes, multipliers, stiffness, d_slacks, strict=True)]
+        d_multipliers = [
+            push - multiplier - weight * d
+            for push, multiplier, weight, d in zip(pushes, multipliers, stiffness, d_slacks, strict=True)
+        ]
         dual = np.minimum(1.0, _BOUNDARY * self.until_zero(multipliers, d_multipliers))
         primal = np.minimum(1.0, _BOUNDARY * self.until_zero([value, *slacks], [d_value, *d_slacks]))
         # The jerk limits curve, so a step that linearised slacks allow may still be too long.
@@ -177,11 +190,13 @@ class Solver:
         scale = dual[self.path_of_cell]
         updated = [multiplier + scale * d for multiplier, d in zip(multipliers, d_multipliers, strict=True)]
         allowed = _allowed(values[0], values[2], state.allowed)
-        return State.of(self, b, values[0], self.slacks(values, allowed), updated, allowed, np.minimum(primal, dual),
-                         stuck)
+        return State.of(
+            self, b, values[0], self.slacks(values, allowed), updated, allowed, np.minimum(primal, dual), stuck
+        )
 
-    def direction(self, state: State, root: FloatArray, pushes: list[FloatArray], stiffness: list[FloatArray]
-                  ) -> tuple[FloatArray, BoolArray]:
+    def direction(
+        self, state: State, root: FloatArray, pushes: list[FloatArray], stiffness: list[FloatArray]
+    ) -> tuple[FloatArray, BoolArray]:
         """Newton's direction for time - mu * sum of log(slack), with stiffness = multiplier / slack; and the paths
         (n_paths,) for which there is none."""
         allowed, multipliers = state.allowed, state.multipliers
@@ -189,11 +204,10 @@ class Solver:
         by_value = 0.5 * root * (np.einsum("ejk,ejk->ek", allowed, pushes[3] + pushes[4]) - _BOOLE[:, None])
         by_value += pushes[0] * self.by_cap
         # Second derivative of the time less that of the jerk limits' J / sqrt(b), where that is positive.
-        convex = np.maximum(
-            _BOOLE[:, None] - np.einsum("ejk,ejk->ek", allowed, multipliers[3] + multipliers[4]), 1e-9)
+        convex = np.maximum(_BOOLE[:, None] - np.einsum("ejk,ejk->ek", allowed, multipliers[3] + multipliers[4]), 1e-9)
         second = 0.75 * convex * root / state.value
-        second += 0.25 * root ** 2 * np.einsum("ejk,ejk,ejk->ek", allowed, allowed, jerk_stiffness)
-        second += stiffness[0] * self.by_cap ** 2
+        second += 0.25 * root**2 * np.einsum("ejk,ejk,ejk->ek", allowed, allowed, jerk_stiffness)
+        second += stiffness[0] * self.by_cap**2
         twisted = 0.5 * root[:, None] * allowed * (stiffness[3] - stiffness[4])
         jerk_push, acceleration_push = pushes[3] - pushes[4], pushes[1] - pushes[2]
         acceleration_stiffness = stiffness[1] + stiffness[2]
@@ -240,9 +254,15 @@ class Solver:
 
     def until_zero(self, values: list[FloatArray], changes: list[FloatArray]) -> FloatArray:
         """(n_paths,) how many such changes the positive values of each path survive."""
-        fastest = np.minimum.reduceat(np.minimum.reduce([
-            (change / value).reshape(-1, value.shape[-1]).min(axis=0, initial=0.0)
-            for value, change in zip(values, changes, strict=True)]), self.first_cell)
+        fastest = np.minimum.reduceat(
+            np.minimum.reduce(
+                [
+                    (change / value).reshape(-1, value.shape[-1]).min(axis=0, initial=0.0)
+                    for value, change in zip(values, changes, strict=True)
+                ]
+            ),
+            self.first_cell,
+        )
         steps: FloatArray = -1.0 / np.minimum(fastest, -1e-9)
         return steps
 
@@ -266,11 +286,20 @@ class State:
     stuck: BoolArray
 
     @staticmethod
-    def of(solver: Solver, b: FloatArray, value: FloatArray, slacks: list[FloatArray],
-           multipliers: list[FloatArray], allowed: FloatArray, step: FloatArray, stuck: BoolArray) -> State:
+    def of(
+        solver: Solver,
+        b: FloatArray,
+        value: FloatArray,
+        slacks: list[FloatArray],
+        multipliers: list[FloatArray],
+        allowed: FloatArray,
+        step: FloatArray,
+        stuck: BoolArray,
+    ) -> State:
         products = solver.total(*(multiplier * slack for multiplier, slack in zip(multipliers, slacks, strict=True)))
-        return State(b, value, slacks, multipliers, allowed, solver.times_s(value), products / solver.n_limits, step,
-                      stuck)
+        return State(
+            b, value, slacks, multipliers, allowed, solver.times_s(value), products / solver.n_limits, step, stuck
+        )
 
     @staticmethod
     def starting(solver: Solver, b: FloatArray) -> State:
@@ -278,24 +307,39 @@ class State:
         allowed = np.ones_like(values[2])
         slacks = solver.slacks(values, allowed)
         mu = (_START_GAP * solver.times_s(values[0]) / solver.n_limits)[solver.path_of_cell]
-        return State.of(solver, b, values[0], slacks, [mu / slack for slack in slacks], allowed,
-                         np.ones(solver.n_paths), np.zeros(solver.n_paths, dtype=bool))
+        return State.of(
+            solver,
+            b,
+            values[0],
+            slacks,
+            [mu / slack for slack in slacks],
+            allowed,
+            np.ones(solver.n_paths),
+            np.zeros(solver.n_paths, dtype=bool),
+        )
 
     def subset(self, solver: Solver, paths: BoolArray) -> State:
         cells = paths[solver.path_of_cell]
         return replace(
-            self, b=self.b[paths[solver.path_of_unknown]], value=self.value[:, cells],
+            self,
+            b=self.b[paths[solver.path_of_unknown]],
+            value=self.value[:, cells],
             slacks=[slack[..., cells] for slack in self.slacks],
             multipliers=[multiplier[..., cells] for multiplier in self.multipliers],
-            allowed=self.allowed[..., cells], time_s=self.time_s[paths], gap=self.gap[paths], step=self.step[paths],
-            stuck=self.stuck[paths])
+            allowed=self.allowed[..., cells],
+            time_s=self.time_s[paths],
+            gap=self.gap[paths],
+            step=self.step[paths],
+            stuck=self.stuck[paths],
+        )
 
 
 VALUE_FORMS = _powers(FRACTIONS, 0) @ HERMITE.T
 """(5 points, 4 unknowns) b at the points of a cell."""
 
 _NEARBY = np.vander(np.add.outer(FRACTIONS[:-1], [1 / 16, 1 / 8, 3 / 16]).ravel(), len(FRACTIONS)) @ np.linalg.inv(
-    np.vander(FRACTIONS, len(FRACTIONS)))
+    np.vander(FRACTIONS, len(FRACTIONS))
+)
 """(12, 5) values at quarters of the way from each of the points to the next, from those at the points."""
 
 
@@ -312,7 +356,7 @@ def _allowed(value: FloatArray, jerk: FloatArray, before: FloatArray) -> FloatAr
     for side, furthest in ((peak[:-1], 0), (peak[1:], 2)):
         np.maximum(side, nearby[furthest::3], out=side)
         np.maximum(side, nearby[1::3], out=side)
-    shares = peak ** 2
+    shares = peak**2
     shares *= shares
     shares *= size - peak
     shares *= _LOWERED_BY

@@ -14,5 +14,7 @@ SLOW_ARM = "raise the limits of the arm's joints, or choose a lower --rate"
 def require_bounded(seconds: float, rate_hz: float, what: str, advice: str, most_samples: int = MOST_SAMPLES) -> None:
     """Errors: UsageError where so many seconds are more samples than there may be, or no number."""
     if not seconds * rate_hz <= most_samples:
-        raise UsageError(f"{what} would take {seconds:.3g} s at least, which is more than {most_samples} samples at"
-                         f" {rate_hz:g} Hz; {advice}")
+        raise UsageError(
+            f"{what} would take {seconds:.3g} s at least, which is more than {most_samples} samples at"
+            f" {rate_hz:g} Hz; {advice}"
+        )

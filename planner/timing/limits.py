@@ -32,6 +32,6 @@ class Limits:
         for order, limit in enumerate((self.velocity, self.acceleration, self.jerk), 1):
             difference = np.diff(difference, axis=0)
             if len(difference):
-                ratio = float((np.abs(difference) / limit).max()) / period_s ** order
+                ratio = float((np.abs(difference) / limit).max()) / period_s**order
                 needed = max(needed, ratio ** (1 / order))
         return needed

@@ -40,7 +40,7 @@ class PathTiming:
     at the points; settled: (n_paths,) whether they are near the least time, rather than the fallback."""
 
     rates: FloatArray
-    settled: BoolArray
+    converged: BoolArray
 
 
 def minimum_time(problem: TimingProblem) -> PathTiming:
@@ -51,34 +51,35 @@ def minimum_time(problem: TimingProblem) -> PathTiming:
     """
     group = np.cumsum(problem.n_cells) // _CELLS_AT_ONCE
     timings = [_timed_together(problem.subset(group == one)) for one in np.unique(group)]
-    return PathTiming(np.concatenate([timing.rates for timing in timings]),
-                      np.concatenate([timing.settled for timing in timings]))
+    return PathTiming(
+        np.concatenate([timing.rates for timing in timings]), np.concatenate([timing.converged for timing in timings])
+    )
 
 
 def _timed_together(problem: TimingProblem) -> PathTiming:
     solver = Solver(problem)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # of paths that fail
-        b, settled = _solved(solver)
+        b, converged = _solved(solver)
     four = np.stack([b[solver.cell + k] for k in range(4)])
     time_s = solver.times_s(VALUE_FORMS @ four)
     steady = np.minimum.reduceat(solver.alone(), solver.first_cell)
-    is_slow = problem.n_cells / np.sqrt(steady) < time_s * np.where(settled, 1.0, 1.0 / _CLEARLY_FASTER)
+    is_slow = problem.n_cells / np.sqrt(steady) < time_s * np.where(converged, 1.0, 1.0 / _CLEARLY_FASTER)
     constant = np.outer(steady, [1.0, 0.0, 0.0, 0.0])
     rates = np.where(is_slow[solver.path_of_cell, None], constant[solver.path_of_cell], four.T @ HERMITE)
-    return PathTiming(rates, settled)
+    return PathTiming(rates, converged)
 
 
 def _solved(solver: Solver) -> tuple[FloatArray, BoolArray]:
     """The unknowns of all paths, and which of these (n_paths,) are near the least time."""
     result = solver.start()
-    settled = np.zeros(solver.n_paths, dtype=bool)
+    converged = np.zeros(solver.n_paths, dtype=bool)
     state = State.starting(solver, result)
     where, paths = np.arange(len(result)), np.arange(solver.n_paths)  # of the working set in the result
     for _ in range(_MOST_ITERATIONS):
         near = state.gap * solver.n_limits <= _GAP * state.time_s
         alive = ~near & ~state.stuck
         if np.repeat(alive, solver.problem.n_cells).mean() < _COMPACT_BELOW:
-            result[where], settled[paths] = state.b, near
+            result[where], converged[paths] = state.b, near
             if not alive.any():
                 break
             where, paths = where[alive[solver.path_of_unknown]], paths[alive]
@@ -87,5 +88,5 @@ def _solved(solver: Solver) -> tuple[FloatArray, BoolArray]:
             alive = np.ones(solver.n_paths, dtype=bool)
         state = solver.step(state, alive)
     else:
-        result[where], settled[paths] = state.b, state.gap * solver.n_limits <= _GAP * state.time_s
-    return result, settled
+        result[where], converged[paths] = state.b, state.gap * solver.n_limits <= _GAP * state.time_s
+    return result, converged

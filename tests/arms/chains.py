@@ -31,7 +31,7 @@ def dh_matrix(theta: float, d: float, a: float, alpha: float) -> FloatArray:
 
 
 def dh_frames(arm: Arm, joints: FloatArray) -> list[FloatArray]:
-    """Frames 0..n of one posture (n_joints,), each 4 x 4 in mm."""
+    """Frames 0..n of one configuration (n_joints,), each 4 x 4 in mm."""
     frames = [np.eye(4)]
     for joint, value in zip(arm.joints, joints, strict=True):
         turn, slide = (value, 0.0) if joint.kind is JointKind.REVOLUTE else (0.0, value)
@@ -40,8 +40,8 @@ def dh_frames(arm: Arm, joints: FloatArray) -> list[FloatArray]:
 
 
 def tips_by_product(arm: Arm, joints: FloatArray) -> FloatArray:
-    """(n, 3) tips of postures (n, n_joints)."""
-    return np.array([dh_frames(arm, posture)[-1][:3, 3] for posture in joints])
+    """(n, 3) tips of configurations (n, n_joints)."""
+    return np.array([dh_frames(arm, configuration)[-1][:3, 3] for configuration in joints])
 
 
 def variant(folder: Path, lengths_mm: tuple[float, float, float, float, float]) -> Arm:
@@ -60,9 +60,13 @@ def variant(folder: Path, lengths_mm: tuple[float, float, float, float, float]) 
 def thick(arm: Arm, **thickness_mm: float) -> Arm:
     """The arm with links that thick; unless some are named, with 30 mm for all that have a length."""
     default = None if thickness_mm else 30.0
-    return replace(arm, joints=tuple(
-        replace(joint, thickness_mm=thickness_mm.get(joint.name, joint.thickness_mm or default))
-        for joint in arm.joints))
+    return replace(
+        arm,
+        joints=tuple(
+            replace(joint, thickness_mm=thickness_mm.get(joint.name, joint.thickness_mm or default))
+            for joint in arm.joints
+        ),
+    )
 
 
 _LENGTHS_MM = st.sampled_from([0.0, 20.0, 35.0, 50.0, -15.0])
@@ -72,32 +76,48 @@ _TWISTS_RAD = st.one_of(st.sampled_from([0.0, pi / 2, -pi / 2, pi]), st.floats(-
 @st.composite
 def chains(draw: st.DrawFn) -> Arm:
     """Two to seven joints of both kinds in any arrangement, now and then with a coupling."""
-    kinds = draw(st.lists(st.sampled_from([JointKind.REVOLUTE, JointKind.REVOLUTE, JointKind.PRISMATIC]),
-                          min_size=2, max_size=7))
+    kinds = draw(
+        st.lists(st.sampled_from([JointKind.REVOLUTE, JointKind.REVOLUTE, JointKind.PRISMATIC]), min_size=2, max_size=7)
+    )
     joints = tuple(
-        Joint(f"j{index}", kind, draw(_TWISTS_RAD), draw(_LENGTHS_MM), draw(_LENGTHS_MM), draw(_TWISTS_RAD),
-              -2.0, 2.0, 3.0, 30.0, 300.0)
-        for index, kind in enumerate(kinds))
+        Joint(
+            f"j{index}",
+            kind,
+            draw(_TWISTS_RAD),
+            draw(_LENGTHS_MM),
+            draw(_LENGTHS_MM),
+            draw(_TWISTS_RAD),
+            -2.0,
+            2.0,
+            3.0,
+            30.0,
+            300.0,
+        )
+        for index, kind in enumerate(kinds)
+    )
     turning = [index for index, kind in enumerate(kinds) if kind is JointKind.REVOLUTE]
     couplings: tuple[Coupling, ...] = ()
     if len(turning) > 1 and draw(st.booleans()):
-        driven, *others = draw(st.permutations(turning))
+        mimic, *others = draw(st.permutations(turning))
         weights = draw(st.lists(st.floats(-2, 2), min_size=len(others), max_size=len(others)))
-        couplings = (Coupling(driven, draw(st.floats(-pi, pi)), tuple(zip(others, weights, strict=True))),)
+        couplings = (Coupling(mimic, draw(st.floats(-pi, pi)), tuple(zip(others, weights, strict=True))),)
     hold = draw(st.sampled_from([PenHold.TOOL_AXIS, PenHold.FREE]))
     return Arm("chain", "made for tests", joints, couplings, Pen(hold, (0.6, 0.0, -0.8), 5.0, 1.0), Workspace(0.0, 1.0))
 
 
-def random_postures(arm: Arm, seed: int, count: int) -> FloatArray:
-    """(count, n_free) postures with the free joints anywhere within their limits."""
-    free = list(arm.free_joints)
-    return np.random.default_rng(seed).uniform(arm.minimum[free], arm.maximum[free], (count, len(free)))
+def random_configurations(arm: Arm, seed: int, count: int) -> FloatArray:
+    """(count, n_independent) configurations with the independent joints anywhere within their limits."""
+    independent = list(arm.independent_joints)
+    return np.random.default_rng(seed).uniform(
+        arm.minimum[independent], arm.maximum[independent], (count, len(independent))
+    )
 
 
-def reachable_postures(arm: Arm, seed: int, count: int) -> FloatArray:
-    """(count, n_free) postures with all joints, driven ones too, within their limits, drawn from 40 times as many."""
-    free = random_postures(arm, seed, 40 * count)
-    joints = arm.complete(free)
-    kept = free[((joints >= arm.minimum) & (joints <= arm.maximum)).all(axis=1)]
+def reachable_configurations(arm: Arm, seed: int, count: int) -> FloatArray:
+    """(count, n_independent) configurations with all joints, mimic ones too, within their limits, drawn from 40 times
+    as many."""
+    independent = random_configurations(arm, seed, 40 * count)
+    joints = arm.complete(independent)
+    kept = independent[((joints >= arm.minimum) & (joints <= arm.maximum)).all(axis=1)]
     assert len(kept) >= count
     return kept[:count]

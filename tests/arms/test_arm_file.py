@@ -81,6 +81,7 @@ def read(tmp_path: Path) -> Reader:
         file = tmp_path / "mixed.toml"
         file.write_text(text, encoding="utf-8")
         return read_arm_file(file)
+
     return read
 
 
@@ -90,9 +91,15 @@ def test_units_are_converted(read: Reader) -> None:
     assert (waist.kind, reach.kind) == (JointKind.REVOLUTE, JointKind.PRISMATIC)
     assert (waist.minimum, waist.maximum, waist.alpha_rad) == pytest.approx((-math.pi / 2, math.pi / 2, math.pi / 2))
     assert (waist.max_velocity, waist.max_acceleration, waist.max_jerk) == pytest.approx(
-        (2 * math.pi, 10 * math.pi, 200 * math.pi))
+        (2 * math.pi, 10 * math.pi, 200 * math.pi)
+    )
     assert (reach.minimum, reach.maximum, reach.max_velocity, reach.max_acceleration, reach.max_jerk) == (
-        10, 80, 100, 1000, 20000)
+        10,
+        80,
+        100,
+        1000,
+        20000,
+    )
     assert reach.theta_rad == pytest.approx(math.pi / 6)
     assert (waist.d_mm, wrist.a_mm, wrist.d_mm) == (40, 25, 0)
     assert arm.column_names == ("waist_deg", "reach_mm", "wrist_deg")
@@ -114,12 +121,19 @@ def test_what_is_left_out_has_its_documented_value(read: Reader) -> None:
 
 
 def test_servos_of_slides_and_buses_are_kept_per_inner_unit(read: Reader) -> None:
-    arm = read(("max_jerk_mm_s3 = 20000.0", "max_jerk_mm_s3 = 20000.0\nservo = { channel = 7, table = [[10, 900.0], "
-                "[50, 1500], [80, 1700]], direction = -1, trim_us = 4, pulse_range_us = [800.0, 1800.0], "
-                "backlash_mm = 0.2 }\nbus = { id = 3, count_at_zero = 100.5, counts_per_mm = -20.0, "
-                "count_range = [-4000, 90] }"),
-               ("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 1, count_at_zero = 2048, counts_per_deg = 10, "
-                "count_range = [0, 4095] }"))
+    arm = read(
+        (
+            "max_jerk_mm_s3 = 20000.0",
+            "max_jerk_mm_s3 = 20000.0\nservo = { channel = 7, table = [[10, 900.0], "
+            "[50, 1500], [80, 1700]], direction = -1, trim_us = 4, pulse_range_us = [800.0, 1800.0], "
+            "backlash_mm = 0.2 }\nbus = { id = 3, count_at_zero = 100.5, counts_per_mm = -20.0, "
+            "count_range = [-4000, 90] }",
+        ),
+        (
+            "a_mm = 25.0",
+            "a_mm = 25.0\nbus = { id = 1, count_at_zero = 2048, counts_per_deg = 10, count_range = [0, 4095] }",
+        ),
+    )
     slide, wrist = arm.joints[1:]
     assert slide.servo is not None
     assert slide.bus is not None
@@ -127,7 +141,11 @@ def test_servos_of_slides_and_buses_are_kept_per_inner_unit(read: Reader) -> Non
     assert slide.servo.curve == ((10, 900), (50, 1500), (80, 1700))
     assert (slide.servo.channel, slide.servo.direction, slide.servo.trim_us, slide.servo.backlash) == (7, -1, 4, 0.2)
     assert (slide.bus.id, slide.bus.count_at_zero, slide.bus.counts_per_unit, slide.bus.count_range) == (
-        3, 100.5, -20, (-4000, 90))
+        3,
+        100.5,
+        -20,
+        (-4000, 90),
+    )
     assert wrist.bus.counts_per_unit == pytest.approx(10 * 180 / math.pi)
 
 
@@ -138,9 +156,9 @@ def test_the_parked_pose_is_completed_by_couplings(read: Reader) -> None:
     assert not arm.park.flags.writeable
 
 
-def test_couplings_complete_a_posture(read: Reader) -> None:
+def test_couplings_complete_a_configuration(read: Reader) -> None:
     arm = read()
-    assert arm.free_joints == (0, 1)
+    assert arm.independent_joints == (0, 1)
     complete = arm.to_file_units(arm.complete(arm.from_file_units([40.0, 30.0, 0.0])[:2]))
     assert complete == pytest.approx([40.0, 30.0, -110.0])
 
@@ -152,21 +170,27 @@ FAULTS = {
     "unknown key of a joint": (("d_mm = 40.0", "d_mm = 40.0\nmass = 2"), ("joints[0].mass: unknown key (value: 2)",)),
     "missing key": (("lift_mm = 4.0", ""), ("pen.lift_mm: missing",)),
     "missing limit": (("max_jerk_mm_s3 = 20000.0", ""), ("joints[1].max_jerk_mm_s3: missing",)),
-    "limits of the other kind": (("min_mm = 10.0", "min_deg = 10.0"),
-                                 ("joints[1].min_mm: missing", "joints[1].min_deg: unknown key (value: 10.0)")),
+    "limits of the other kind": (
+        ("min_mm = 10.0", "min_deg = 10.0"),
+        ("joints[1].min_mm: missing", "joints[1].min_deg: unknown key (value: 10.0)"),
+    ),
     "wrong type": (("lift_mm = 4.0", 'lift_mm = "4"'), ("pen.lift_mm:", "(value: '4')")),
     "true is no number": (("lift_mm = 4.0", "lift_mm = true"), ("pen.lift_mm:", "(value: True)")),
     "not finite": (("a_mm = 25.0", "a_mm = inf"), ("joints[2].a_mm:", "(value: inf)")),
     "no number": (("a_mm = 25.0", "a_mm = nan"), ("joints[2].a_mm:", "(value: nan)")),
     "zero speed": (("max_velocity_mm_s = 100.0", "max_velocity_mm_s = 0"), ("joints[1].max_velocity_mm_s:", "0")),
     "negative radius": (("inner_radius_mm = 20.0", "inner_radius_mm = -1.0"), ("workspace.inner_radius_mm:", "-1.0")),
-    "unknown kind": (('kind = "prismatic"', 'kind = "continuous"'),
-                     ("joints[1].kind: has to be one of 'revolute', 'prismatic' (value: 'continuous'), joint reach",)),
+    "unknown kind": (
+        ('kind = "prismatic"', 'kind = "continuous"'),
+        ("joints[1].kind: has to be one of 'revolute', 'prismatic' (value: 'continuous'), joint reach",),
+    ),
     "no kind": (('kind = "prismatic"', ""), ("joints[1].kind: missing, joint reach",)),
     "a link too long": (("a_mm = 25.0", "a_mm = 1e9"), ("joints[2].a_mm: has to be 10000 or less", "joint wrist")),
     "links too long together": (("a_mm = 25.0", "a_mm = 9990.0"), ("10110 mm together, more than 10000 mm",)),
-    "a jerk of nothing": (("max_jerk_mm_s3 = 20000.0", "max_jerk_mm_s3 = 1e-320"),
-                          ("joints[1].max_jerk_mm_s3: has to be 0.001 or more",)),
+    "a jerk of nothing": (
+        ("max_jerk_mm_s3 = 20000.0", "max_jerk_mm_s3 = 1e-320"),
+        ("joints[1].max_jerk_mm_s3: has to be 0.001 or more",),
+    ),
     "a long name": (('name = "wrist"\nkind', f'name = "{"w" * 300}"\nkind'), ("64 characters or fewer",)),
     "unknown hold": (('hold = "coupling"', 'hold = "glue"'), ("pen.hold:", "(value: 'glue')")),
     "name with a comma": (('name = "waist"', 'name = "waist,1"'), ("joints[0].name:", "(value: 'waist,1')")),
@@ -176,48 +200,79 @@ FAULTS = {
     "name twice": (('name = "reach"', 'name = "waist"'), ("joints[1].name: 'waist' is used twice",)),
     "pulses swapped": (("[600.0, 2400.0]", "[2400.0, 600.0]"), ("joints[0].servo.pulse_range_us: 2400", "600")),
     "three pulses": (("[600.0, 2400.0]", "[600.0, 900.0, 2400.0]"), ("joints[0].servo.pulse_range_us:",)),
-    "neither line nor table": (("us_per_deg = -10.0, ", ""),
-                               ("joints[0].servo: needs pulse_at_zero_us and us_per_deg",)),
-    "line and table": (("us_per_deg = -10.0", "us_per_deg = -10.0, table = [[0, 600], [9, 700]]"),
-                       ("joints[0].servo: a table stands in place of",)),
+    "neither line nor table": (
+        ("us_per_deg = -10.0, ", ""),
+        ("joints[0].servo: needs pulse_at_zero_us and us_per_deg",),
+    ),
+    "line and table": (
+        ("us_per_deg = -10.0", "us_per_deg = -10.0, table = [[0, 600], [9, 700]]"),
+        ("joints[0].servo: a table stands in place of",),
+    ),
     "a servo that stands still": (("us_per_deg = -10.0", "us_per_deg = 0"), ("joints[0].servo: us_per_deg 0",)),
-    "positions that turn back": ((LINE, "table = [[0, 600], [9, 700], [9, 800]]"),
-                                 ("joints[0].servo.table: its positions have to go up, not from 9 to 9",)),
-    "pulses that turn back": ((LINE, "table = [[0, 600], [9, 700], [10, 650]]"),
-                              ("joints[0].servo.table: its pulses have to go one way, not from 700 to 650 us at 10",)),
+    "positions that turn back": (
+        (LINE, "table = [[0, 600], [9, 700], [9, 800]]"),
+        ("joints[0].servo.table: its positions have to go up, not from 9 to 9",),
+    ),
+    "pulses that turn back": (
+        (LINE, "table = [[0, 600], [9, 700], [10, 650]]"),
+        ("joints[0].servo.table: its pulses have to go one way, not from 700 to 650 us at 10",),
+    ),
     "pulses that stay": ((LINE, "table = [[0, 600], [9, 600]]"), ("joints[0].servo.table: its pulses", "600 to 600")),
     "one row": ((LINE, "table = [[0, 600]]"), ("joints[0].servo.table:",)),
     "direction 2": (("us_per_deg = -10.0", "us_per_deg = -10.0, direction = 2"), ("joints[0].servo.direction:", "2")),
-    "a slide's servo in degrees": (("max_jerk_mm_s3 = 20000.0", "max_jerk_mm_s3 = 20000.0\nservo = { table = [[0, 600],"
-                                    " [9, 700]], pulse_range_us = [500, 800], backlash_deg = 1 }"),
-                                   ("joints[1].servo.backlash_deg: unknown key",)),
-    "counts swapped": (("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 1, count_at_zero = 0, counts_per_deg = 1, "
-                        "count_range = [9, 3] }"), ("joints[2].bus.count_range: 9 is not below 3",)),
-    "a bus servo that stands still": (("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 1, count_at_zero = 0, "
-                                       "counts_per_deg = 0, count_range = [3, 9] }"), ("joints[2].bus: 0 counts",)),
-    "broadcast as an id": (("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 254, count_at_zero = 0, counts_per_deg = 1, "
-                            "count_range = [3, 9] }"), ("joints[2].bus.id:", "254")),
+    "a slide's servo in degrees": (
+        (
+            "max_jerk_mm_s3 = 20000.0",
+            "max_jerk_mm_s3 = 20000.0\nservo = { table = [[0, 600],"
+            " [9, 700]], pulse_range_us = [500, 800], backlash_deg = 1 }",
+        ),
+        ("joints[1].servo.backlash_deg: unknown key",),
+    ),
+    "counts swapped": (
+        ("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 1, count_at_zero = 0, counts_per_deg = 1, count_range = [9, 3] }"),
+        ("joints[2].bus.count_range: 9 is not below 3",),
+    ),
+    "a bus servo that stands still": (
+        ("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 1, count_at_zero = 0, counts_per_deg = 0, count_range = [3, 9] }"),
+        ("joints[2].bus: 0 counts",),
+    ),
+    "broadcast as an id": (
+        ("a_mm = 25.0", "a_mm = 25.0\nbus = { id = 254, count_at_zero = 0, counts_per_deg = 1, count_range = [3, 9] }"),
+        ("joints[2].bus.id:", "254"),
+    ),
     "parked in part": (("[[coupling]]", "[park]\nwaist = 0\n[[coupling]]"), ("park.reach: missing",)),
-    "parked twice over": (("[[coupling]]", "[park]\nwaist = 0\nreach = 20\nwrist = -90\n[[coupling]]"),
-                          ("park.wrist: follows from its coupling",)),
-    "parks nothing": (("[[coupling]]", "[park]\nwaist = 0\nreach = 20\nhips = 0\n[[coupling]]"),
-                      ("park: there is no joint 'hips'",)),
-    "parked beyond a limit": (("[[coupling]]", "[park]\nwaist = 0\nreach = 90\n[[coupling]]"),
-                              ("park.reach: 90 mm is outside its limits of 10 to 80",)),
-    "parked where the coupling cannot follow": (("[[coupling]]", "[park]\nwaist = 30\nreach = 20\n[[coupling]]"),
-                                                ("park.wrist: -105 deg is outside",)),
+    "parked twice over": (
+        ("[[coupling]]", "[park]\nwaist = 0\nreach = 20\nwrist = -90\n[[coupling]]"),
+        ("park.wrist: follows from its coupling",),
+    ),
+    "parks nothing": (
+        ("[[coupling]]", "[park]\nwaist = 0\nreach = 20\nhips = 0\n[[coupling]]"),
+        ("park: there is no joint 'hips'",),
+    ),
+    "parked beyond a limit": (
+        ("[[coupling]]", "[park]\nwaist = 0\nreach = 90\n[[coupling]]"),
+        ("park.reach: 90 mm is outside its limits of 10 to 80",),
+    ),
+    "parked where the coupling cannot follow": (
+        ("[[coupling]]", "[park]\nwaist = 30\nreach = 20\n[[coupling]]"),
+        ("park.wrist: -105 deg is outside",),
+    ),
     "coupled to nothing": (("{ waist = -0.5 }", "{ hips = -0.5 }"), ("coupling[0]: there is no joint 'hips'", "waist")),
     "couples nothing": (('joint = "wrist"', 'joint = "hand"'), ("coupling[0]: there is no joint 'hand'",)),
     "coupled to a slide": (("{ waist = -0.5 }", "{ reach = -0.5 }"), ("coupling[0]: joint 'reach' is prismatic",)),
     "coupled to itself": (("{ waist = -0.5 }", "{ wrist = -0.5 }"), ("'wrist' is itself driven",)),
     "coupled twice": (
         ("[[coupling]]", '[[coupling]]\njoint = "wrist"\nconstant_deg = 0.0\ncoefficients = {}\n\n[[coupling]]'),
-        ("coupling[1].joint: 'wrist' is driven by two couplings",)),
-    "clearance above the lift": (("lift_mm = 4.0", "lift_mm = 4.0\nclearance_mm = 6.0"),
-                                 ("pen: clearance_mm 6 is above lift_mm 4",)),
-    "an axis without direction": (('hold = "coupling"\ntool_axis = [0.0, 0.0, -2.0]',
-                                   'hold = "tool_axis"\ntool_axis = [0.0, 0.0, 0.0]'),
-                                  ("pen: tool_axis has no direction",)),
+        ("coupling[1].joint: 'wrist' is driven by two couplings",),
+    ),
+    "clearance above the lift": (
+        ("lift_mm = 4.0", "lift_mm = 4.0\nclearance_mm = 6.0"),
+        ("pen: clearance_mm 6 is above lift_mm 4",),
+    ),
+    "an axis without direction": (
+        ('hold = "coupling"\ntool_axis = [0.0, 0.0, -2.0]', 'hold = "tool_axis"\ntool_axis = [0.0, 0.0, 0.0]'),
+        ("pen: tool_axis has no direction",),
+    ),
     "an axis in the plane": (("[0.0, 0.0, -2.0]", "[0.0, 1.0]"), ("pen.tool_axis:",)),
     "not TOML": (("[pen]", "[pen"), ("is not TOML",)),
 }
@@ -239,8 +294,12 @@ def test_a_fault_is_told_with_file_key_and_value(read: Reader, kind: str) -> Non
 
 def test_all_faults_are_told_at_once(read: Reader) -> None:
     with pytest.raises(ArmFileError) as caught:
-        read(("lift_mm = 4.0", ""), ("a_mm = 25.0", "a_mm = nan"), ("d_mm = 40.0", "dd_mm = 40.0"),
-             ('kind = "prismatic"', 'kind = "sliding"'))
+        read(
+            ("lift_mm = 4.0", ""),
+            ("a_mm = 25.0", "a_mm = nan"),
+            ("d_mm = 40.0", "dd_mm = 40.0"),
+            ('kind = "prismatic"', 'kind = "sliding"'),
+        )
     assert len(caught.value.faults) == 4
     with pytest.raises(ArmFileError) as caught:
         read(('name = "reach"', 'name = "waist"'), ("{ waist = -0.5 }", "{ hips = -0.5 }"))
@@ -250,8 +309,12 @@ def test_all_faults_are_told_at_once(read: Reader) -> None:
 def test_faults_in_form_do_not_hide_faults_in_meaning(read: Reader) -> None:
     """Within a section; what sections contradict each other in shows once each is right by itself."""
     with pytest.raises(ArmFileError) as caught:
-        read(("lift_mm = 4.0", "lift_mm = 0.5"), ("min_mm = 10.0", "min_mm = 90.0"), ("a_mm = 25.0", "a_m = 0.025"),
-             ("[600.0, 2400.0]", "[2400.0, 600.0]"))
+        read(
+            ("lift_mm = 4.0", "lift_mm = 0.5"),
+            ("min_mm = 10.0", "min_mm = 90.0"),
+            ("a_mm = 25.0", "a_m = 0.025"),
+            ("[600.0, 2400.0]", "[2400.0, 600.0]"),
+        )
     assert len(caught.value.faults) == 4
 
 
@@ -259,17 +322,19 @@ def test_two_joints_on_one_channel_are_told_of_both(read: Reader) -> None:
     servo = "servo = { channel = 0, table = [[0, 600], [9, 700]], pulse_range_us = [500, 800] }"
     with pytest.raises(ArmFileError) as caught:
         read(("a_mm = 25.0", f"a_mm = 25.0\n{servo}"))
-    assert caught.value.faults == ("joints[0].servo.channel: 0 is another joint's too",
-                                   "joints[2].servo.channel: 0 is another joint's too")
+    assert caught.value.faults == (
+        "joints[0].servo.channel: 0 is another joint's too",
+        "joints[2].servo.channel: 0 is another joint's too",
+    )
 
 
 def test_hold_by_coupling_needs_one(read: Reader) -> None:
     with pytest.raises(ArmFileError, match=r"'coupling' needs at least one \[\[coupling\]\]"):
-        read((ARM[ARM.index("[[coupling]]"):], ""))
+        read((ARM[ARM.index("[[coupling]]") :], ""))
 
 
 def test_an_arm_has_joints(read: Reader) -> None:
-    joints = ARM[ARM.index("[[joints]]"):]
+    joints = ARM[ARM.index("[[joints]]") :]
     with pytest.raises(ArmFileError, match="joints: missing"):
         read((joints, ""))
 
@@ -298,14 +363,36 @@ def test_files_that_are_no_files_are_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.toml")
     (tmp_path / "loop.toml").symlink_to(tmp_path / "loop.toml")
     (tmp_path / "large.toml").write_bytes(b"#" * 1_000_001)
-    for name, said in (("pipe", "is not a regular file"), ("loop", "cannot be read"), ("large", "more than 1000000"),
-                       ("x" * 300, "cannot be read")):
+    for name, said in (
+        ("pipe", "is not a regular file"),
+        ("loop", "cannot be read"),
+        ("large", "more than 1000000"),
+        ("x" * 300, "cannot be read"),
+    ):
         with pytest.raises(ArmFileError, match=said):
             load_arm(str(tmp_path / f"{name}.toml"))
 
 
-_VALUES = st.sampled_from(["nan", "-inf", "0", "1e-320", "1e9", "1" + "0" * 400, "-5", '"text"', "true", "[]", "{}",
-                           "[[]]", "2026-01-01", '"continuous"', '"q1"', "[0.0, 0.0, 1.0]"])
+_VALUES = st.sampled_from(
+    [
+        "nan",
+        "-inf",
+        "0",
+        "1e-320",
+        "1e9",
+        "1" + "0" * 400,
+        "-5",
+        '"text"',
+        "true",
+        "[]",
+        "{}",
+        "[[]]",
+        "2026-01-01",
+        '"continuous"',
+        '"q1"',
+        "[0.0, 0.0, 1.0]",
+    ]
+)
 
 
 @given(st.sampled_from(ARM.splitlines()), _VALUES)
@@ -327,7 +414,8 @@ def test_any_value_is_taken_or_refused_in_plain_words(line: str, value: str) -> 
 
 @pytest.mark.parametrize("name", known_arms())
 def test_arms_that_come_along_are_found_by_name_from_any_folder(
-        name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     arm = load_arm(name)
     assert arm.name == name
@@ -350,12 +438,36 @@ def test_description_is_the_file_again(read: Reader) -> None:
     assert json.loads(json.dumps(arm_description(read()))) == {
         "name": "mixed",
         "joints": [
-            {"name": "waist", "kind": "revolute", "unit": "deg", "min": -90, "max": 90, "max_velocity": 360,
-             "max_acceleration": 1800, "max_jerk": 36000},
-            {"name": "reach", "kind": "prismatic", "unit": "mm", "min": 10, "max": 80, "max_velocity": 100,
-             "max_acceleration": 1000, "max_jerk": 20000},
-            {"name": "wrist", "kind": "revolute", "unit": "deg", "min": -100, "max": 100, "max_velocity": 360,
-             "max_acceleration": 1800, "max_jerk": 36000},
+            {
+                "name": "waist",
+                "kind": "revolute",
+                "unit": "deg",
+                "min": -90,
+                "max": 90,
+                "max_velocity": 360,
+                "max_acceleration": 1800,
+                "max_jerk": 36000,
+            },
+            {
+                "name": "reach",
+                "kind": "prismatic",
+                "unit": "mm",
+                "min": 10,
+                "max": 80,
+                "max_velocity": 100,
+                "max_acceleration": 1000,
+                "max_jerk": 20000,
+            },
+            {
+                "name": "wrist",
+                "kind": "revolute",
+                "unit": "deg",
+                "min": -100,
+                "max": 100,
+                "max_velocity": 360,
+                "max_acceleration": 1800,
+                "max_jerk": 36000,
+            },
         ],
         "dh": [
             {"theta_deg": 0, "d_mm": 40, "a_mm": 0, "alpha_deg": 90},

@@ -7,9 +7,9 @@ import pytest
 
 from planner.arms.arm import JointKind, PenHold
 from planner.arms.arm_file import known_arms
-from planner.arms.canvas import usable_canvas
-from planner.arms.frame_jacobian import chain_frames
-from planner.arms.posture_field import posture_field
+from planner.kinematics.frame_jacobian import chain_frames
+from planner.redundancy.configuration_map import configuration_map_of
+from planner.workspace.canvas import usable_canvas
 from tests.arms.chains import load_once
 
 TAUGHT = {
@@ -21,16 +21,16 @@ TAUGHT = {
 
 
 @pytest.mark.parametrize("name", known_arms())
-def test_every_arm_has_a_canvas_and_postures_within_limits(name: str) -> None:
+def test_every_arm_has_a_canvas_and_configurations_within_limits(name: str) -> None:
     arm = load_once(name)
     canvas = usable_canvas(arm, arm.pen.lift_mm)
     assert canvas.width_mm >= 60
     assert canvas.height_mm >= 25
     tips = np.column_stack((canvas.corners_arm_mm, np.zeros(4)))
     for height in (0.0, arm.pen.lift_mm):
-        postures, kept = posture_field(arm).postures_at(tips + np.array([0.0, 0.0, height]))
+        configurations, kept = configuration_map_of(arm).configurations_at(tips + np.array([0.0, 0.0, height]))
         assert kept.all()
-        pen = chain_frames(arm, arm.complete(postures))[:, -1] @ [*arm.pen.tool_axis, 0.0]
+        pen = chain_frames(arm, arm.complete(configurations))[:, -1] @ [*arm.pen.tool_axis, 0.0]
         if arm.pen.hold is not PenHold.FREE:
             np.testing.assert_allclose(pen[:, :3], np.tile([0, 0, -1], (4, 1)), atol=2e-7)
 
@@ -76,16 +76,20 @@ def test_the_so101_is_the_published_chain() -> None:
     """Origins and turns of the joints as published (mm and roll, pitch, yaw), from the pan axis to the gripper frame,
     with shoulder_pan counted the other way round and the pen 30 mm beyond the gripper frame."""
     half = np.pi / 2
-    published = [((0, 0, 62.4), (np.pi, 0, -np.pi)), ((-30.3992, -18.2778, -54.2), (-half, -half, 0)),
-                 ((-112.57, -28.0, 0), (0, 0, half)), ((-134.9, 5.2, 0), (0, 0, -half)),
-                 ((0, -61.1, 18.1), (half, 0.0486795, np.pi))]
+    published = [
+        ((0, 0, 62.4), (np.pi, 0, -np.pi)),
+        ((-30.3992, -18.2778, -54.2), (-half, -half, 0)),
+        ((-112.57, -28.0, 0), (0, 0, half)),
+        ((-134.9, 5.2, 0), (0, 0, -half)),
+        ((0, -61.1, 18.1), (half, 0.0486795, np.pi)),
+    ]
     gripper = _shift(-7.9, -0.218121, -98.1274) @ _turn("y", np.pi)
     arm = load_once("so101")
     joints = np.random.default_rng(8).uniform(arm.minimum, arm.maximum, (200, 5))
     frames = chain_frames(arm, joints)[:, -1]
-    for posture, frame in zip(joints * [-1, 1, 1, 1, 1], frames, strict=True):
+    for configuration, frame in zip(joints * [-1, 1, 1, 1, 1], frames, strict=True):
         pose = np.eye(4)
-        for (origin, (roll, pitch, yaw)), value in zip(published, posture, strict=True):
+        for (origin, (roll, pitch, yaw)), value in zip(published, configuration, strict=True):
             pose = pose @ _shift(*origin) @ _turn("z", yaw) @ _turn("y", pitch) @ _turn("x", roll) @ _turn("z", value)
         pose = pose @ gripper @ _shift(0, 0, 30.0)
         np.testing.assert_allclose(frame[:3, 3], pose[:3, 3], atol=1e-3)

@@ -13,17 +13,17 @@ from hypothesis import strategies as st
 
 from planner.arms.arm import Arm, PenHold
 from planner.arms.arm_file import known_arms, read_arm_file
-from planner.arms.canvas import canvas_of
 from planner.arms.description import arm_description
-from planner.arms.kinematics import kinematics_of
-from planner.arms.posture_field import posture_field, posture_sheets
-from planner.arms.posture_samples import COARSE_STEP_MM, on_ray, stretched_to_edges
-from planner.arms.projection import project
 from planner.cli import main
 from planner.errors import PlanError
-from planner.inverse_kinematics.stroke_postures import joint_paths
+from planner.inverse_kinematics.stroke_configurations import joint_paths
+from planner.kinematics.chain import kinematics_of
+from planner.kinematics.projection import project
 from planner.placement.pen_path import smooth_paths
-from planner.settings import CanvasKind, Method, PostureWeights
+from planner.redundancy.configuration_map import configuration_branches, configuration_map_of
+from planner.redundancy.samples import COARSE_STEP_MM, on_ray, stretched_to_edges
+from planner.settings import CanvasKind, ConfigurationWeights, Method
+from planner.workspace.canvas import canvas_of
 from tests.arms.chains import load_once, tips_by_product
 from tests.arms.known_arms import KNOWN_ARMS, file_text, scaled
 
@@ -39,12 +39,12 @@ def drawing(tmp_path: Path) -> Path:
 
 
 def require_exact_field(arm: Arm) -> None:
-    for sheet in posture_sheets(arm):
+    for sheet in configuration_branches(arm):
         tips = on_ray(np.linspace(sheet.radii_mm[0], sheet.radii_mm[-1], 200))
-        free, good = sheet.postures_at(tips)
+        independent, good = sheet.configurations_at(tips)
         assert good.all()
-        np.testing.assert_allclose(tips_by_product(arm, arm.complete(free)), tips, atol=1e-6)
-        steps_s = np.abs(np.diff(arm.complete(free), axis=0)) / arm.max_velocity
+        np.testing.assert_allclose(tips_by_product(arm, arm.complete(independent)), tips, atol=1e-6)
+        steps_s = np.abs(np.diff(arm.complete(independent), axis=0)) / arm.max_velocity
         assert steps_s.max() / (tips[1, 0] - tips[0, 0]) < 1.0 / arm.workspace.min_tip_speed_mm_s * 4
 
 
@@ -73,7 +73,7 @@ def test_they_draw_what_the_check_accepts(name: str, drawing: Path, tmp_path: Pa
 def test_a_long_way_from_the_reference_a_pen_still_points_at_its_target() -> None:
     """Millimetres of a metre and radians of pointing stand side by side in one equation."""
     arm = KNOWN_ARMS["ur5e"]
-    field, kinematics = posture_field(arm), kinematics_of(arm)
+    field, kinematics = configuration_map_of(arm), kinematics_of(arm)
     radii = np.linspace(field.radii_mm[0] + 20, field.radii_mm[-1] - 20, 30)
     references = np.repeat(field.home[None], len(radii), axis=0)
     found, exact = project(kinematics, references, on_ray(radii))
@@ -83,14 +83,14 @@ def test_a_long_way_from_the_reference_a_pen_still_points_at_its_target() -> Non
 
 
 def test_a_course_keeps_the_way_to_its_edges() -> None:
-    """Where few postures are sampled, the walk to the edge is long, and what lies between has to be near it."""
+    """Where few configurations are sampled, the walk to the edge is long, and what lies between has to be near it."""
     arm = KNOWN_ARMS["ur5e"]
-    field, kinematics = posture_field(arm), kinematics_of(arm)
+    field, kinematics = configuration_map_of(arm), kinematics_of(arm)
     middle = len(field.radii_mm) // 2
-    radii, postures = stretched_to_edges(kinematics, field.radii_mm[middle:middle + 1], field.home[None])
+    radii, configurations = stretched_to_edges(kinematics, field.radii_mm[middle : middle + 1], field.home[None])
     assert radii[-1] - radii[0] > 100 * COARSE_STEP_MM
     assert np.diff(radii).max() <= COARSE_STEP_MM
-    np.testing.assert_allclose(tips_by_product(arm, arm.complete(postures)), on_ray(radii), atol=1e-6)
+    np.testing.assert_allclose(tips_by_product(arm, arm.complete(configurations)), on_ray(radii), atol=1e-6)
 
 
 def test_the_file_of_a_known_arm_is_that_arm(tmp_path: Path) -> None:
@@ -105,7 +105,8 @@ def test_every_canvas_of_every_arm_is_finite_and_in_reach(name: str, kind: Canva
     arm = load_once(name)
     canvas = canvas_of(arm, kind, arm.pen.lift_mm)
     longest = sum(abs(joint.a_mm) + abs(joint.d_mm) for joint in arm.joints) + sum(
-        joint.maximum for joint in arm.joints if joint.file_unit == "mm")
+        joint.maximum for joint in arm.joints if joint.file_unit == "mm"
+    )
     assert 0 < canvas.width_mm < 2 * longest
     assert 0 < canvas.height_mm < longest
 
@@ -113,26 +114,32 @@ def test_every_canvas_of_every_arm_is_finite_and_in_reach(name: str, kind: Canva
 def test_an_arm_with_fewer_joints_than_a_pen_needs_is_told_so() -> None:
     arm = load_once("six_joint")
     with pytest.raises(PlanError, match=r"takes \d joints that move by themselves, and it has 2"):
-        posture_field(replace(arm, joints=arm.joints[:2]))
+        configuration_map_of(replace(arm, joints=arm.joints[:2]))
 
 
 _REFUSALS = {
-    "beyond limits": (lambda joint: replace(joint, minimum=2.9, maximum=3.0) if joint.name == "q3" else joint,
-                      r"\d+ have a joint beyond its limits or nearly so \(.*q3 in \d+.*widen these limits"),
-    "too slow": (lambda joint: replace(joint, max_velocity=1e-4),
-                 r"\d+ cannot move the tip fast enough in every direction.*lower workspace.min_tip_speed_mm_s"),
+    "beyond limits": (
+        lambda joint: replace(joint, minimum=2.9, maximum=3.0) if joint.name == "q3" else joint,
+        r"\d+ have a joint beyond its limits or nearly so \(.*q3 in \d+.*widen these limits",
+    ),
+    "too slow": (
+        lambda joint: replace(joint, max_velocity=1e-4),
+        r"\d+ cannot move the tip fast enough in every direction.*lower workspace.min_tip_speed_mm_s",
+    ),
     "too high": (lambda joint: replace(joint, d_mm=900.0) if joint.name == "q1" else joint, "none gets there"),
-    "too thick": (lambda joint: replace(joint, thickness_mm=300.0) if joint.a_mm else joint,
-                  r"\d+ bring links too close.*check thickness_mm"),
+    "too thick": (
+        lambda joint: replace(joint, thickness_mm=300.0) if joint.a_mm else joint,
+        r"\d+ bring links too close.*check thickness_mm",
+    ),
 }
 
 
 @pytest.mark.parametrize("cause", _REFUSALS)
-def test_an_arm_without_a_posture_is_told_what_most_of_them_lack(cause: str) -> None:
+def test_an_arm_without_a_configuration_is_told_what_most_of_them_lack(cause: str) -> None:
     change, said = _REFUSALS[cause]
     arm = load_once("drawing_arm")
     with pytest.raises(PlanError, match=said):
-        posture_field(replace(arm, joints=tuple(map(change, arm.joints))))
+        configuration_map_of(replace(arm, joints=tuple(map(change, arm.joints))))
 
 
 def test_a_pen_that_never_points_down_is_told_so() -> None:
@@ -142,25 +149,30 @@ def test_a_pen_that_never_points_down_is_told_so() -> None:
     if axis < 0:
         upwards = replace(upwards, pen=replace(upwards.pen, tool_axis=(0.0, 0.0, -1.0)))
     with pytest.raises(PlanError, match="tool_axis never points down"):
-        posture_field(upwards)
+        configuration_map_of(upwards)
 
 
 @settings(max_examples=6)
-@given(st.sampled_from(["drawing_arm_2022", "scara", "three_joint"]),
-       st.tuples(*[st.sampled_from([0.0, 0.0, 1e-3, 1.0, 7.0])] * 4).filter(any))
-def test_any_weights_leave_a_course_that_a_pen_can_follow(name: str, weights: tuple[float, float, float, float]
-                                                          ) -> None:
+@given(
+    st.sampled_from(["drawing_arm_2022", "scara", "three_joint"]),
+    st.tuples(*[st.sampled_from([0.0, 0.0, 1e-3, 1.0, 7.0])] * 4).filter(any),
+)
+def test_any_weights_leave_a_course_that_a_pen_can_follow(
+    name: str, weights: tuple[float, float, float, float]
+) -> None:
     arm = load_once(name)
     canvas = canvas_of(arm, CanvasKind.USABLE, arm.pen.lift_mm)
     x0, x1, y0, y1 = canvas.near_mm + 3, canvas.far_mm - 3, canvas.right_mm + 3, canvas.left_mm - 3
     strokes = [np.array([[x0, 0.0], [x1, 0.1]]), np.array([[x0, y0], [x1, y1], [x1, y0]])]
-    _, obstacles = joint_paths(arm, Method.PATH, smooth_paths(strokes, 0.025), PostureWeights(*weights))
-    assert not obstacles
+    _, infeasible_paths = joint_paths(arm, Method.PATH, smooth_paths(strokes, 0.025), ConfigurationWeights(*weights))
+    assert not infeasible_paths
 
 
 def test_weights_without_a_price_on_motion_do_not_jump() -> None:
     arm = load_once("scara")
     canvas = canvas_of(arm, CanvasKind.USABLE, arm.pen.lift_mm)
     strokes = [np.array([[canvas.near_mm + 3, 0.0], [canvas.far_mm - 3, canvas.left_mm - 3]])]
-    _, obstacles = joint_paths(arm, Method.PATH, smooth_paths(strokes, 0.025), PostureWeights(0.0, 1.0, 0.0, 0.0))
-    assert not obstacles
+    _, infeasible_paths = joint_paths(
+        arm, Method.PATH, smooth_paths(strokes, 0.025), ConfigurationWeights(0.0, 1.0, 0.0, 0.0)
+    )
+    assert not infeasible_paths

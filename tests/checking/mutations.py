@@ -27,7 +27,7 @@ def _aloft(sheet: Sheet) -> int:
     """The sample where the pen is highest between two strokes."""
     down = np.flatnonzero(sheet.pen)
     height = np.where(sheet.pen, -np.inf, sheet.tip_mm()[:, 2])
-    return down[0] + int(np.argmax(height[down[0]:down[-1]]))
+    return down[0] + int(np.argmax(height[down[0] : down[-1]]))
 
 
 def _bump(sheet: Sheet, centre: int, offset_mm: tuple[float, float, float], half: int = 8) -> Sheet:
@@ -111,8 +111,9 @@ def _redrawn(sheet: Sheet, linear: FloatArray) -> Sheet:
     a, b, c, d, e, f = map(float, sheet.head["svg_to_arm_mm"].split())
     other = np.array([[a, c, e], [b, d, f], [0, 0, 1]])
     back = np.linalg.solve(one, other)
-    outlines = tuple(replace(outline, beziers=outline.beziers @ back[:2, :2].T + back[:2, 2])
-                     for outline in sheet.drawing.outlines)
+    outlines = tuple(
+        replace(outline, beziers=outline.beziers @ back[:2, :2].T + back[:2, 2]) for outline in sheet.drawing.outlines
+    )
     return replace(moved, drawing=replace(sheet.drawing, outlines=outlines))
 
 
@@ -136,7 +137,7 @@ def _slanted(sheet: Sheet, by_mm: float) -> Sheet:
     last = int(np.flatnonzero(sheet.pen[:-1] & ~sheet.pen[1:])[0])
     samples = np.arange(last + 1, last + 40)
     height = sheet.tip_mm()[samples, 2]
-    samples = samples[:int(np.argmax(height > 0.7 * height.max())) or 1]
+    samples = samples[: int(np.argmax(height > 0.7 * height.max())) or 1]
     height = sheet.tip_mm()[samples, 2]
     offsets = np.zeros((len(samples), 3))
     offsets[:, 1] = by_mm * np.clip(height / 0.5, 0.0, 1.0)
@@ -160,11 +161,16 @@ def _uncoupled(sheet: Sheet, samples: slice) -> Sheet | None:
 
 def _drawing(change: Callable[[tuple[FloatArray, ...]], list[FloatArray]]) -> Mutation:
     """Another drawing than the one that was planned: what is too much in one is missing in the other."""
+
     def mutate(sheet: Sheet) -> Sheet:
         outlines = sheet.drawing.outlines
         changed = change(tuple(outline.beziers for outline in outlines))
-        return replace(sheet, drawing=replace(sheet.drawing, outlines=tuple(
-            replace(outlines[0], beziers=beziers) for beziers in changed)))
+        return replace(
+            sheet,
+            drawing=replace(
+                sheet.drawing, outlines=tuple(replace(outlines[0], beziers=beziers) for beziers in changed)
+            ),
+        )
 
     return mutate
 
@@ -211,7 +217,8 @@ MUTATIONS: dict[str, Mutation] = {
     "beyond the upper limit of a joint": lambda s: _beyond(s, "maximum", 1e-6),
     "beyond the lower limit of a joint": lambda s: _beyond(s, "minimum", 1e-6),
     "played 2 % faster": lambda s: replace(s, head={**s.head, "rate_hz": repr(1.02 * s.rate_hz)}).rows(
-        np.arange(len(s.cells))),
+        np.arange(len(s.cells))
+    ),
     "rate doubled": lambda s: replace(s, head={**s.head, "rate_hz": repr(2 * s.rate_hz)}).rows(np.arange(len(s.cells))),
     "rate of the header wrong": lambda s: s.told(rate_hz=repr(1.01 * s.rate_hz)),
     "duration of the header wrong": lambda s: s.told(duration_s=repr(1 + float(s.head["duration_s"]))),
@@ -221,8 +228,9 @@ MUTATIONS: dict[str, Mutation] = {
     "a row lost, times made good": lambda s: s.rows(_but(s, _amid(s))),
     "a row twice": lambda s: replace(s, cells=np.insert(s.cells, _amid(s), s.cells[_amid(s)], axis=0)),
     "a row twice, times made good": lambda s: s.rows(np.sort(np.append(np.arange(len(s.cells)), _amid(s)))),
-    "two rows swapped": lambda s: s.rows(np.concatenate((np.arange(_amid(s)), [_amid(s) + 1, _amid(s)],
-                                                         np.arange(_amid(s) + 2, len(s.cells))))),
+    "two rows swapped": lambda s: s.rows(
+        np.concatenate((np.arange(_amid(s)), [_amid(s) + 1, _amid(s)], np.arange(_amid(s) + 2, len(s.cells))))
+    ),
     "cut off at the end": lambda s: s.rows(np.arange(_aloft(s))),
     "begins in motion": lambda s: s.rows(np.arange(_aloft(s), len(s.cells))),
     "begins in a stroke": lambda s: s.rows(np.arange(_amid(s), len(s.cells))),
@@ -232,15 +240,16 @@ MUTATIONS: dict[str, Mutation] = {
     "first joints swapped": lambda s: _swapped(s, 1, 2, names=False),
     "names of joints swapped": lambda s: _swapped(s, 1, 2, names=True),
     "last joint named otherwise": lambda s: replace(s, names=[*s.names[:-3], "other_deg", *s.names[-2:]]),
-    "first joint the other way": lambda s: s.with_positions(
-        np.column_stack((-s.positions[:, 0], s.positions[:, 1:]))),
+    "first joint the other way": lambda s: s.with_positions(np.column_stack((-s.positions[:, 0], s.positions[:, 1:]))),
     "first joint off by 0.1": lambda s: s.with_positions(s.positions + 0.1 * (np.arange(s.arm.n_joints) == 0)),
     "second joint off by 0.1": lambda s: s.with_positions(s.positions + 0.1 * (np.arange(s.arm.n_joints) == 1)),
     "coupling broken at one sample": lambda s: _uncoupled(s, slice(_aloft(s), _aloft(s) + 1)),
     "coupling broken everywhere": lambda s: _uncoupled(s, slice(None)),
     "arm a tenth of a millimetre longer": lambda s: _with_joint(
-        s, max(range(s.arm.n_joints), key=lambda j: abs(s.arm.joints[j].a_mm)),
-        a_mm=0.1 + max((one.a_mm for one in s.arm.joints), key=abs)),
+        s,
+        max(range(s.arm.n_joints), key=lambda j: abs(s.arm.joints[j].a_mm)),
+        a_mm=0.1 + max((one.a_mm for one in s.arm.joints), key=abs),
+    ),
     "arm a tenth of a millimetre higher": lambda s: _with_joint(s, 0, d_mm=0.1 + s.arm.joints[0].d_mm),
     "a stroke not marked": lambda s: _without(s, int(s.stroke[_amid(s)])),
     "the first stroke not marked": lambda s: _without(s, 0),
@@ -253,7 +262,8 @@ MUTATIONS: dict[str, Mutation] = {
     "pen down aloft": lambda s: _labels(s, lambda k: np.where(np.arange(len(k)) == _aloft(s), k.max(), k)),
     "pen down at the first sample": lambda s: _labels(s, lambda k: np.where(np.arange(len(k)) == 0, 0, k)),
     "pen down at the last sample": lambda s: _labels(
-        s, lambda k: np.where(np.arange(len(k)) == len(k) - 1, k.max() + 1, k)),
+        s, lambda k: np.where(np.arange(len(k)) == len(k) - 1, k.max() + 1, k)
+    ),
     "flag begins a sample early": lambda s: _edge(s, end=False, by=1),
     "flag begins a sample late": lambda s: _edge(s, end=False, by=-1),
     "flag ends a sample early": lambda s: _edge(s, end=True, by=-1),
@@ -288,7 +298,8 @@ MUTATIONS: dict[str, Mutation] = {
     "tip 0.2 mm beside a stroke": lambda s: _bump(s, _amid(s), (0.14, 0.14, 0.0)),
     "tip 0.2 mm beside a stroke, both ways": lambda s: _bump(s, _amid(s), (0.14, -0.14, 0.0)),
     "pen dips into the paper on its way": lambda s: _bump(
-        s, _aloft(s), (0.0, 0.0, -0.2 - float(s.tip_mm()[_aloft(s), 2])), half=30),
+        s, _aloft(s), (0.0, 0.0, -0.2 - float(s.tip_mm()[_aloft(s), 2])), half=30
+    ),
     "travels at half of the clearance": lambda s: _flattened_travel(s, 0.5 * s.arm.pen.clearance_mm),
     "leaves the paper sideways": lambda s: _slanted(s, 0.2),
     "a stroke too much": _drawing(lambda outlines: list(outlines[:-1])),

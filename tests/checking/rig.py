@@ -19,21 +19,38 @@ AFFINE = (0.0, -0.5, -0.5, 0.0, 100.0, 50.0)
 """x = 100 - v / 2, y = 50 - u / 2."""
 
 
-def joint(name: str, kind: JointKind = JointKind.REVOLUTE, theta: float = 0.0, d: float = 0.0, a: float = 0.0,
-          alpha: float = 0.0, low: float = -200.0, high: float = 200.0) -> Joint:
+def joint(
+    name: str,
+    kind: JointKind = JointKind.REVOLUTE,
+    theta: float = 0.0,
+    d: float = 0.0,
+    a: float = 0.0,
+    alpha: float = 0.0,
+    low: float = -200.0,
+    high: float = 200.0,
+) -> Joint:
     return Joint(name, kind, theta, d, a, alpha, low, high, 150.0, 3000.0, 60000.0)
 
 
-def arm_of(*joints: Joint, couplings: tuple[Coupling, ...] = (), hold: PenHold = PenHold.CONSTRUCTION,
-           tool_axis: tuple[float, float, float] = (1.0, 0.0, 0.0)) -> Arm:
+def arm_of(
+    *joints: Joint,
+    couplings: tuple[Coupling, ...] = (),
+    hold: PenHold = PenHold.CONSTRUCTION,
+    tool_axis: tuple[float, float, float] = (1.0, 0.0, 0.0),
+) -> Arm:
     return Arm("rig", "made for tests", joints, couplings, Pen(hold, tool_axis, LIFT_MM, 1.0), Workspace(0.0, 10.0))
 
 
 def gantry() -> Arm:
     """Three sliding joints: height of the carriage (20 mm above the nib), -y and x."""
     slide = JointKind.PRISMATIC
-    return arm_of(joint("h", slide, alpha=pi / 2), joint("v", slide, theta=pi / 2, alpha=pi / 2),
-                  joint("u", slide, a=-20.0), hold=PenHold.TOOL_AXIS, tool_axis=(-1.0, 0.0, 0.0))
+    return arm_of(
+        joint("h", slide, alpha=pi / 2),
+        joint("v", slide, theta=pi / 2, alpha=pi / 2),
+        joint("u", slide, a=-20.0),
+        hold=PenHold.TOOL_AXIS,
+        tool_axis=(-1.0, 0.0, 0.0),
+    )
 
 
 def with_limit(arm: Arm, name: str, **limits: float) -> Arm:
@@ -71,8 +88,17 @@ class Hand:
     def trajectory(self) -> Trajectory:
         """For the gantry."""
         x, y, z = self.tip_mm().T
-        return Trajectory("rig", "rig.svg", "hand", RATE_HZ, gantry().column_names, np.column_stack((z + 20, -y, x)),
-                          np.concatenate(self.pens), np.concatenate(self.strokes), AFFINE)
+        return Trajectory(
+            "rig",
+            "rig.svg",
+            "hand",
+            RATE_HZ,
+            gantry().column_names,
+            np.column_stack((z + 20, -y, x)),
+            np.concatenate(self.pens),
+            np.concatenate(self.strokes),
+            AFFINE,
+        )
 
 
 CORNERED = ((60.0, 10.0), (80.0, 10.0), (80.0, -10.0))

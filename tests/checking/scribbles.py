@@ -63,7 +63,7 @@ def _doubled(rng: np.random.Generator) -> str:
 
 def _there_and_back(rng: np.random.Generator) -> str:
     line = rng.uniform(0, 100, (2, 2))
-    return _path(line[[0, 1, 0, 1][:int(rng.integers(3, 5))]])
+    return _path(line[[0, 1, 0, 1][: int(rng.integers(3, 5))]])
 
 
 def _taps(rng: np.random.Generator) -> str:
@@ -81,8 +81,10 @@ def _dashes(rng: np.random.Generator) -> str:
     begin, end = rng.uniform(0, 100, (2, 2))
     along = (end - begin) / np.linalg.norm(end - begin)
     length, gap = rng.uniform(0.02, 1.0, 2)
-    return " ".join(_path(np.array([begin + k * (length + gap) * along, begin + (k * (length + gap) + length) * along]))
-                    for k in range(12))
+    return " ".join(
+        _path(np.array([begin + k * (length + gap) * along, begin + (k * (length + gap) + length) * along]))
+        for k in range(12)
+    )
 
 
 def _star(rng: np.random.Generator) -> str:
@@ -93,11 +95,22 @@ def _star(rng: np.random.Generator) -> str:
 
 def _touching(rng: np.random.Generator) -> str:
     corners = rng.uniform(0, 100, (6, 2))
-    return " ".join(_path(np.array([one, other + rng.uniform(-0.02, 0.02, 2)]))
-                    for one, other in pairwise(corners))
+    return " ".join(_path(np.array([one, other + rng.uniform(-0.02, 0.02, 2)])) for one, other in pairwise(corners))
 
 
 KINDS: dict[str, Callable[[np.random.Generator], str]] = {
-    "polyline": _polyline, "curve": _curve, "closed": _closed, "tiny scribble": _tiny_scribble, "walk": _walk,
-    "hatch": _hatch, "snake": _snake, "doubled": _doubled, "there and back": _there_and_back, "taps": _taps,
-    "tap on a line": _tap_on_a_line, "dashes": _dashes, "star": _star, "touching": _touching}
+    "polyline": _polyline,
+    "curve": _curve,
+    "closed": _closed,
+    "tiny scribble": _tiny_scribble,
+    "walk": _walk,
+    "hatch": _hatch,
+    "snake": _snake,
+    "doubled": _doubled,
+    "there and back": _there_and_back,
+    "taps": _taps,
+    "tap on a line": _tap_on_a_line,
+    "dashes": _dashes,
+    "star": _star,
+    "touching": _touching,
+}

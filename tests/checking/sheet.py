@@ -31,11 +31,15 @@ class Sheet:
     @staticmethod
     def of(trajectory: Trajectory, arm: Arm, drawing: Drawing, decimals: int = 9) -> Sheet:
         head = dict(line[2:].split(": ", 1) for line in trajectory.head.text().splitlines())
-        columns = [[f"{time:.6f}" for time in trajectory.times_s],
-                   *[[f"{value:.{decimals}f}" for value in column] for column in trajectory.positions.T],
-                   [str(int(down)) for down in trajectory.pen], [str(stroke) for stroke in trajectory.stroke]]
-        return Sheet(head, ["t_s", *trajectory.columns, "pen", "stroke"], np.array(columns, dtype=object).T, arm,
-                     drawing)
+        columns = [
+            [f"{time:.6f}" for time in trajectory.times_s],
+            *[[f"{value:.{decimals}f}" for value in column] for column in trajectory.positions.T],
+            [str(int(down)) for down in trajectory.pen],
+            [str(stroke) for stroke in trajectory.stroke],
+        ]
+        return Sheet(
+            head, ["t_s", *trajectory.columns, "pen", "stroke"], np.array(columns, dtype=object).T, arm, drawing
+        )
 
     @property
     def positions(self) -> FloatArray:
@@ -97,9 +101,9 @@ class Sheet:
 
     def lead_mm(self, samples: IntArray, offset_mm: FloatArray) -> Sheet:
         """The tip moved by offsets (n, 3) at some samples, couplings kept, by Newton's method on differences."""
-        free = list(self.arm.free_joints)
-        postures = self.arm.from_file_units(self.positions)
-        q = postures[samples][:, free]
+        free = list(self.arm.independent_joints)
+        configurations = self.arm.from_file_units(self.positions)
+        q = configurations[samples][:, free]
         wanted = self.tip_mm()[samples] + offset_mm
 
         def tips(values: FloatArray) -> FloatArray:
@@ -110,5 +114,5 @@ class Sheet:
             here = tips(q)
             slopes = np.stack([(tips(q + step) - here) / 1e-6 for step in 1e-6 * np.eye(len(free))], axis=2)
             q = q + np.einsum("nij,nj->ni", np.linalg.pinv(slopes), wanted - here)
-        postures[samples] = self.arm.complete(q)
-        return self.with_positions(self.arm.to_file_units(postures))
+        configurations[samples] = self.arm.complete(q)
+        return self.with_positions(self.arm.to_file_units(configurations))

@@ -23,14 +23,15 @@ JERK = 1000.0
 def motion(seed: int, n_steps: int) -> FloatArray:
     """(n_steps * FINE + 1,) a position whose jerk jumps between its limits at random fine instants."""
     rng = np.random.default_rng(seed)
-    jerk = np.repeat(rng.choice([-JERK, 0.0, JERK], n_steps * FINE // 8 + 1), 8)[:n_steps * FINE]
+    jerk = np.repeat(rng.choice([-JERK, 0.0, JERK], n_steps * FINE // 8 + 1), 8)[: n_steps * FINE]
     fine = STEP_S / FINE
     state = np.array([rng.uniform(-50, 50), rng.uniform(-10, 10), rng.uniform(-50, 50)])
     states = [state]
     for value in jerk:
         q, v, a = state
-        state = np.array([q + v * fine + a * fine**2 / 2 + value * fine**3 / 6,
-                          v + a * fine + value * fine**2 / 2, a + value * fine])
+        state = np.array(
+            [q + v * fine + a * fine**2 / 2 + value * fine**3 / 6, v + a * fine + value * fine**2 / 2, a + value * fine]
+        )
         states.append(state)
     return np.array(states)
 
@@ -39,7 +40,7 @@ def motion(seed: int, n_steps: int) -> FloatArray:
 def test_cubics_stay_within_their_error(seed: int, n_steps: int) -> None:
     true = motion(seed, n_steps)[:, 0]
     blocks = list(positions_between(true[::FINE, np.newaxis], Interpolation.CUBIC))
-    error = np.abs(np.concatenate(blocks)[:, 0] - true[::FINE // POINTS_PER_STEP])
+    error = np.abs(np.concatenate(blocks)[:, 0] - true[:: FINE // POINTS_PER_STEP])
     assert error.max() <= cubic_error(np.array(JERK), STEP_S) + 1e-12
     assert np.all(error[::POINTS_PER_STEP] < 1e-12)
 
@@ -49,12 +50,26 @@ def test_a_motion_at_its_limits_passes_and_one_above_fails(seed: int, n_steps: i
     states = motion(seed, n_steps)
     positions = np.zeros((n_steps + 1, 3))
     positions[:, 0] = np.round(states[::FINE, 0], 6)
-    arm = with_limit(gantry(), "h", max_velocity=float(np.abs(states[:, 1]).max()),
-                     max_acceleration=float(np.abs(states[:, 2]).max()), max_jerk=JERK)
+    arm = with_limit(
+        gantry(),
+        "h",
+        max_velocity=float(np.abs(states[:, 1]).max()),
+        max_acceleration=float(np.abs(states[:, 2]).max()),
+        max_jerk=JERK,
+    )
     pen = np.zeros(n_steps + 1, dtype=bool)
-    trajectory = Trajectory("", "", "", 1 / STEP_S, arm.column_names, positions, pen,
-                            np.full(n_steps + 1, TRAVELLING), AFFINE,
-                            decimals=np.full(positions.shape, 6, dtype=np.int8))
+    trajectory = Trajectory(
+        "",
+        "",
+        "",
+        1 / STEP_S,
+        arm.column_names,
+        positions,
+        pen,
+        np.full(n_steps + 1, TRAVELLING),
+        AFFINE,
+        decimals=np.full(positions.shape, 6, dtype=np.int8),
+    )
     findings = rate_limits(trajectory, arm)
     assert all(finding.passed for finding in findings)
     figure = next(finding for finding in findings if finding.check == "velocity").worst
@@ -88,11 +103,21 @@ def there_and_back(rate_hz: float, decimals: int) -> Trajectory:
     ends = 0.06 * np.arange(5)
     t = np.arange(0, ends[-1] + 1e-9, 1 / rate_hz)
     signs = np.array([1.0, -2.0, 0.0, 2.0])  # by how much the jerk changes at the beginning of each part
-    rise = sum(change * np.clip(t - begin, 0, None)**3 / 6 for change, begin in zip(signs, ends, strict=False))
+    rise = sum(change * np.clip(t - begin, 0, None) ** 3 / 6 for change, begin in zip(signs, ends, strict=False))
     positions = np.zeros((len(t), 3))
     positions[:, 0] = np.round(25 + JERK * rise, decimals)
-    return Trajectory("", "", "", rate_hz, gantry().column_names, positions, np.zeros(len(t), dtype=bool),
-                      np.full(len(t), TRAVELLING), AFFINE, decimals=np.full(positions.shape, decimals, dtype=np.int8))
+    return Trajectory(
+        "",
+        "",
+        "",
+        rate_hz,
+        gantry().column_names,
+        positions,
+        np.zeros(len(t), dtype=bool),
+        np.full(len(t), TRAVELLING),
+        AFFINE,
+        decimals=np.full(positions.shape, decimals, dtype=np.int8),
+    )
 
 
 @pytest.mark.parametrize("rate_hz", [50.0, 100.0, 1000.0, 2000.0, 5000.0, 10_000.0])

@@ -25,7 +25,8 @@ lengths = st.sampled_from([0.0, 0.0, 30.0, -12.5, 50.0])
 def arms(draw: st.DrawFn) -> Arm:
     rows = [
         joint(f"q{index}", draw(st.sampled_from(JointKind)), draw(angles), draw(lengths), draw(lengths), draw(angles))
-        for index in range(draw(st.integers(1, 7)))]
+        for index in range(draw(st.integers(1, 7)))
+    ]
     return arm_of(*rows, tool_axis=(0.6, 0.0, -0.8))
 
 
@@ -54,9 +55,9 @@ def row(one: Joint, position: float) -> tuple[FloatArray, FloatArray]:
 def test_poses_are_the_product_of_the_rows(arm: Arm, seed: int) -> None:
     positions = np.random.default_rng(seed).uniform(-3, 3, (4, arm.n_joints))
     poses = chain_poses(arm, positions)
-    for index, posture in enumerate(positions):
+    for index, configuration in enumerate(positions):
         pose, nodes = np.eye(4), [np.zeros(3)]
-        for one, position in zip(arm.joints, posture, strict=True):
+        for one, position in zip(arm.joints, configuration, strict=True):
             for half in row(one, position):
                 pose = pose @ half
                 nodes.append(pose[:3, 3])
@@ -65,14 +66,16 @@ def test_poses_are_the_product_of_the_rows(arm: Arm, seed: int) -> None:
         others = [node[2] for node in nodes if np.abs(node - pose[:3, 3]).max() > 1e-9]
         lowest = min(others, default=0.0)
         assert poses.lowest_mm[index] == pytest.approx(lowest, abs=1e-9) or poses.lowest_mm[index] == pytest.approx(
-            min(lowest, pose[2, 3]), abs=1e-9)  # a joint may slide by nothing, and its node is then the tip
+            min(lowest, pose[2, 3]), abs=1e-9
+        )  # a joint may slide by nothing, and its node is then the tip
 
 
 def five_joints(hold: PenHold = PenHold.COUPLING) -> Arm:
     links = [joint(f"q{index}", a=50.0, low=-pi, high=pi) for index in range(2, 6)]
     upright = Coupling(4, -pi / 2, ((1, -1.0), (2, -1.0), (3, -1.0)))
-    return arm_of(joint("q1", d=50.0, alpha=pi / 2), *links, hold=hold,
-                  couplings=(upright,) if hold is PenHold.COUPLING else ())
+    return arm_of(
+        joint("q1", d=50.0, alpha=pi / 2), *links, hold=hold, couplings=(upright,) if hold is PenHold.COUPLING else ()
+    )
 
 
 @given(st.tuples(*[angles] * 5))
@@ -82,14 +85,16 @@ def test_five_joints_by_their_formula(angles_rad: tuple[float, ...]) -> None:
     radius, height = 50 * np.cos(pitch).sum(), 50 + 50 * np.sin(pitch).sum()
     poses = chain_poses(five_joints(), np.array([angles_rad]))
     np.testing.assert_allclose(
-        poses.tip_mm[:, 0], [radius * cos(first), radius * sin(first), height], rtol=0, atol=1e-9)
+        poses.tip_mm[:, 0], [radius * cos(first), radius * sin(first), height], rtol=0, atol=1e-9
+    )
 
 
 def resting(arm: Arm, degrees: list[float], down: slice = slice(0)) -> Trajectory:
     pen = np.zeros(20, dtype=bool)
     pen[down] = True
-    return Trajectory("rig", "", "", RATE_HZ, arm.column_names, np.tile(degrees, (20, 1)), pen,
-                      np.where(pen, 0, TRAVELLING), AFFINE)
+    return Trajectory(
+        "rig", "", "", RATE_HZ, arm.column_names, np.tile(degrees, (20, 1)), pen, np.where(pen, 0, TRAVELLING), AFFINE
+    )
 
 
 def found(trajectory: Trajectory, arm: Arm) -> set[str]:
@@ -100,16 +105,15 @@ def found(trajectory: Trajectory, arm: Arm) -> set[str]:
 def test_a_coupling_off_by_a_little_is_found() -> None:
     arm = five_joints()
     arm = replace(arm, joints=tuple(replace(one, maximum=pi, minimum=-pi) for one in arm.joints))
-    posture = [20.0, 90.0, -70.0, -60.0, -50.0]
-    assert not found(resting(arm, posture), arm)
-    assert not found(resting(arm, [*posture[:4], -50.00009]), arm)
-    assert found(resting(arm, [*posture[:4], -50.00011]), arm) == {"coupling"}
+    configuration = [20.0, 90.0, -70.0, -60.0, -50.0]
+    assert not found(resting(arm, configuration), arm)
+    assert not found(resting(arm, [*configuration[:4], -50.00009]), arm)
+    assert found(resting(arm, [*configuration[:4], -50.00011]), arm) == {"coupling"}
     assert found(resting(arm, [20.0, 90.0, -70.0, -59.9998, -50.0]), arm) == {"coupling"}
 
 
 def test_a_tilted_pen_is_found_where_it_has_to_be_upright() -> None:
-    arm = arm_of(joint("q1", a=60.0), joint("q2", alpha=pi / 2, d=30.0), joint("q3", a=30.0),
-                 hold=PenHold.TOOL_AXIS)
+    arm = arm_of(joint("q1", a=60.0), joint("q2", alpha=pi / 2, d=30.0), joint("q3", a=30.0), hold=PenHold.TOOL_AXIS)
     tilted = 2.0
     lower = replace(arm.joints[1], d_mm=30 * cos(np.radians(tilted)))
     leaning = replace(arm, joints=(arm.joints[0], lower, arm.joints[2]))
@@ -129,8 +133,8 @@ def test_a_link_through_the_paper_is_found() -> None:
 
 def test_a_slide_below_its_limit_is_named() -> None:
     arm = with_limit(gantry(), "h", minimum=26.0)
-    verdict = check_trajectory(resting(arm, [25.0, 0.0, 0.0]), arm)
-    finding, between = verdict.faults
+    check_result = check_trajectory(resting(arm, [25.0, 0.0, 0.0]), arm)
+    finding, between = check_result.faults
     assert between.check == "position between samples"
     assert (finding.check, finding.worst, finding.unit) == ("position", 25.0, "mm")
     assert finding.limit == 26.0

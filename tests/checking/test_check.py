@@ -11,7 +11,7 @@ import pytest
 
 from planner.arms.arm import Arm
 from planner.checking.check import check_trajectory
-from planner.checking.verdict import Finding, Place, Verdict
+from planner.checking.check_result import CheckResult, Finding, Place
 from planner.trajectory import TRAVELLING, Trajectory
 from tests.checking.rig import (
     AFFINE,
@@ -31,34 +31,51 @@ DRAWING = drawing_of(CORNERED, SHORT, DOT)
 
 
 def faults(trajectory: Trajectory, arm: Arm | None = None) -> dict[str, Finding]:
-    verdict = check_trajectory(trajectory, arm or gantry(), DRAWING)
-    assert verdict.passed == (not verdict.faults)
-    return {finding.check: finding for finding in verdict.faults}
+    check_result = check_trajectory(trajectory, arm or gantry(), DRAWING)
+    assert check_result.passed == (not check_result.faults)
+    return {finding.check: finding for finding in check_result.faults}
 
 
 def test_a_sound_trajectory_passes() -> None:
-    verdict = check_trajectory(hand().trajectory(), gantry(), DRAWING)
-    assert verdict.passed, verdict.text()
-    assert {finding.check for finding in verdict.findings} >= {
-        "columns", "starts at rest", "ends at rest", "position", "velocity", "acceleration", "jerk",
-        "strokes in order", "pen down within strokes", "tip on the paper while the pen is down",
-        "pen upright on the paper", "tip below the paper while the pen is up", "links below the paper",
-        "straight up and down below clearance", "nothing extra", "nothing missing", "nothing twice"}
+    check_result = check_trajectory(hand().trajectory(), gantry(), DRAWING)
+    assert check_result.passed, check_result.text()
+    assert {finding.check for finding in check_result.findings} >= {
+        "columns",
+        "starts at rest",
+        "ends at rest",
+        "position",
+        "velocity",
+        "acceleration",
+        "jerk",
+        "strokes in order",
+        "pen down within strokes",
+        "tip on the paper while the pen is down",
+        "pen upright on the paper",
+        "tip below the paper while the pen is up",
+        "links below the paper",
+        "straight up and down below clearance",
+        "nothing extra",
+        "nothing missing",
+        "nothing twice",
+    }
 
 
 def test_figures_are_those_of_the_motion() -> None:
     trajectory = hand().trajectory()
-    verdict = check_trajectory(trajectory, gantry(), DRAWING)
-    velocity = {finding.place.joint: finding for finding in verdict.findings
-                if finding.check == "velocity" and finding.place}
+    check_result = check_trajectory(trajectory, gantry(), DRAWING)
+    velocity = {
+        finding.place.joint: finding
+        for finding in check_result.findings
+        if finding.check == "velocity" and finding.place
+    }
     expected = np.abs(np.diff(trajectory.positions[:, 2])) * RATE_HZ
     assert velocity["u"].worst == pytest.approx(expected.max())
     assert velocity["u"].place is not None
     assert velocity["u"].place.sample == np.argmax(expected) + 1
     assert velocity["u"].place.line == 9 + velocity["u"].place.sample
-    (highest,) = [finding for finding in verdict.findings if finding.check == "highest tip"]
+    (highest,) = [finding for finding in check_result.findings if finding.check == "highest tip"]
     assert highest.worst == pytest.approx(LIFT_MM)
-    (extra,) = [finding for finding in verdict.findings if finding.check == "nothing extra"]
+    (extra,) = [finding for finding in check_result.findings if finding.check == "nothing extra"]
     assert extra.worst is not None
     assert extra.worst < 1e-4  # the cubic at the corner
 
@@ -72,7 +89,7 @@ def bumped(column: int, first: int, height: float, n: int = 40) -> Trajectory:
     trajectory = hand().trajectory()
     positions = trajectory.positions.copy()
     t = np.arange(n) / (n - 1)
-    positions[first:first + n, column] += height * (64 * (t * (1 - t)) ** 3) ** 2
+    positions[first : first + n, column] += height * (64 * (t * (1 - t)) ** 3) ** 2
     return replace(trajectory, positions=positions)
 
 
@@ -106,8 +123,9 @@ def pen_at(sample: int) -> Trajectory:
 
 def part(selection: slice) -> Trajectory:
     whole = hand().trajectory()
-    return replace(whole, positions=whole.positions[selection], pen=whole.pen[selection],
-                   stroke=whole.stroke[selection])
+    return replace(
+        whole, positions=whole.positions[selection], pen=whole.pen[selection], stroke=whole.stroke[selection]
+    )
 
 
 FIRST = int(samples_of(0)[0])
@@ -119,16 +137,26 @@ BROKEN: dict[str, tuple[Callable[[], Trajectory], set[str]]] = {
     "off the line": (lambda: bumped(1, FIRST + 10, 0.2), {"nothing extra", "nothing missing"}),
     "sideways while lowered": (lambda: bumped(1, FIRST - 25, 0.8, 24), {"straight up and down below clearance"}),
     "below the paper while lifted": (
-        lambda: Hand(60, 0).draw(CORNERED, 0).move(*SHORT[0], LIFT_MM).move(*SHORT[0], -0.2).move(*SHORT[0], 0.0)
-        .draw(SHORT, 1).draw(DOT, 2).trajectory(), {"tip below the paper while the pen is up"}),
+        lambda: (
+            Hand(60, 0)
+            .draw(CORNERED, 0)
+            .move(*SHORT[0], LIFT_MM)
+            .move(*SHORT[0], -0.2)
+            .move(*SHORT[0], 0.0)
+            .draw(SHORT, 1)
+            .draw(DOT, 2)
+            .trajectory()
+        ),
+        {"tip below the paper while the pen is up"},
+    ),
     "low travel": (low_travel, {"straight up and down below clearance"}),
-    "a stroke left out": (
-        lambda: Hand(60, 0).draw(CORNERED, 0).draw(DOT, 1).trajectory(), {"nothing missing"}),
+    "a stroke left out": (lambda: Hand(60, 0).draw(CORNERED, 0).draw(DOT, 1).trajectory(), {"nothing missing"}),
     "a tap left out": (lambda: Hand(60, 0).draw(CORNERED, 0).draw(SHORT, 1).trajectory(), {"nothing missing"}),
     "half a stroke left out": (
-        lambda: Hand(60, 0).draw(CORNERED[:2], 0).draw(SHORT, 1).draw(DOT, 2).trajectory(), {"nothing missing"}),
-    "a line too much": (
-        lambda: hand().draw(((90, 20), (90, 30)), 3).trajectory(), {"nothing extra"}),
+        lambda: Hand(60, 0).draw(CORNERED[:2], 0).draw(SHORT, 1).draw(DOT, 2).trajectory(),
+        {"nothing missing"},
+    ),
+    "a line too much": (lambda: hand().draw(((90, 20), (90, 30)), 3).trajectory(), {"nothing extra"}),
     "a tap too much": (lambda: hand().draw(((90, 20),), 3).trajectory(), {"nothing extra"}),
     "a stroke twice": (stroke_again, {"nothing twice"}),
     "nothing drawn": (lambda: Hand(60, 0).move(80, 0, 5).trajectory(), {"nothing missing"}),
@@ -136,13 +164,17 @@ BROKEN: dict[str, tuple[Callable[[], Trajectory], set[str]]] = {
     "an index left out": (lambda: with_stroke(samples_of(2), 3), {"strokes in order"}),
     "not from 0": (
         lambda: changed(stroke=np.where(hand().trajectory().pen, hand().trajectory().stroke + 1, TRAVELLING)),
-        {"strokes in order"}),
+        {"strokes in order"},
+    ),
     "pen up within a stroke": (
         lambda: changed(pen=hand().trajectory().pen & (np.arange(hand().trajectory().n_samples) != FIRST + 20)),
-        {"pen down within strokes", "pen as the tip", "straight up and down below clearance", "nothing missing"}),
+        {"pen down within strokes", "pen as the tip", "straight up and down below clearance", "nothing missing"},
+    ),
     "another map": (lambda: changed(svg_to_arm_mm=(*AFFINE[:4], 100.2, 50.0)), {"nothing extra", "nothing missing"}),
-    "mirrored map": (lambda: changed(svg_to_arm_mm=(0, .5, -.5, 0, 100, 50)),
-                     {"svg_to_arm_mm", "nothing extra", "nothing missing"}),
+    "mirrored map": (
+        lambda: changed(svg_to_arm_mm=(0, 0.5, -0.5, 0, 100, 50)),
+        {"svg_to_arm_mm", "nothing extra", "nothing missing"},
+    ),
     "flat map": (lambda: changed(svg_to_arm_mm=(1, 1, 1, 1, 0, 0)), {"svg_to_arm_mm"}),
     "huge map": (lambda: changed(svg_to_arm_mm=(0, 1e6, 1e6, 0, 0, 0)), {"svg_to_arm_mm"}),
     "zero map": (lambda: changed(svg_to_arm_mm=(0, 0, 0, 0, 0, 0)), {"svg_to_arm_mm"}),
@@ -168,16 +200,28 @@ def test_skipping_the_lift_draws_what_is_not_there() -> None:
     assert "nothing extra" in faults(moving.draw(DOT, 2).trajectory())
 
 
-@pytest.mark.parametrize(("check", "limit"), [
-    ("velocity", "max_velocity"), ("acceleration", "max_acceleration"), ("jerk", "max_jerk"),
-    ("position", "maximum"), ("position", "minimum")])
+@pytest.mark.parametrize(
+    ("check", "limit"),
+    [
+        ("velocity", "max_velocity"),
+        ("acceleration", "max_acceleration"),
+        ("jerk", "max_jerk"),
+        ("position", "maximum"),
+        ("position", "minimum"),
+    ],
+)
 @pytest.mark.parametrize("name", ["h", "v", "u"])
 def test_a_limit_a_little_tighter_than_the_motion_is_broken(check: str, limit: str, name: str) -> None:
     trajectory = hand().trajectory()
     column = trajectory.positions[:, "hvu".index(name)]
     order = {"velocity": 1, "acceleration": 2, "jerk": 3}.get(check)
-    reached = column.min() if limit == "minimum" else column.max() if order is None else (
-        np.abs(np.diff(column, n=order)).max() * RATE_HZ**order)
+    reached = (
+        column.min()
+        if limit == "minimum"
+        else column.max()
+        if order is None
+        else (np.abs(np.diff(column, n=order)).max() * RATE_HZ**order)
+    )
     slack = 1e-3 * abs(reached) + 4e-3  # above what is allowed for rounding
     sign = -1 if limit == "minimum" else 1
     assert not faults(trajectory, with_limit(gantry(), name, **{limit: reached + sign * slack}))
@@ -185,8 +229,10 @@ def test_a_limit_a_little_tighter_than_the_motion_is_broken(check: str, limit: s
     found = faults(trajectory, with_limit(gantry(), name, **{limit: reached - sign * slack}))
     assert check in found
     # A tighter jerk also tightens what rest is, and what is beyond at a sample is so beside it: no more.
-    assert set(found) <= {check, *{"jerk": ["starts at rest", "ends at rest"],
-                                   "position": ["position between samples"]}.get(check, [])}
+    assert set(found) <= {
+        check,
+        *{"jerk": ["starts at rest", "ends at rest"], "position": ["position between samples"]}.get(check, []),
+    }
     place = found[check].place
     assert place is not None
     assert place.joint == name
@@ -196,11 +242,20 @@ def test_a_turn_between_samples_is_seen() -> None:
     t = (np.arange(30) - 14.5) / RATE_HZ
     turn = 60 - 0.5 * 1250 * t**2  # a parabola that is highest midway between two samples
     positions = np.column_stack((np.full(30, 25.0), np.zeros(30), turn))
-    trajectory = Trajectory("rig", "", "", RATE_HZ, gantry().column_names, positions, np.zeros(30, dtype=bool),
-                            np.full(30, TRAVELLING), AFFINE)
+    trajectory = Trajectory(
+        "rig",
+        "",
+        "",
+        RATE_HZ,
+        gantry().column_names,
+        positions,
+        np.zeros(30, dtype=bool),
+        np.full(30, TRAVELLING),
+        AFFINE,
+    )
     top = float(turn.max())
-    verdict = check_trajectory(trajectory, with_limit(gantry(), "u", maximum=top))
-    (found,) = [finding for finding in verdict.faults if finding.check == "position between samples"]
+    check_result = check_trajectory(trajectory, with_limit(gantry(), "u", maximum=top))
+    (found,) = [finding for finding in check_result.faults if finding.check == "position between samples"]
     assert found.worst == pytest.approx(top + 1250 / RATE_HZ**2 / 8)
     assert found.limit == pytest.approx(top)
     assert found.place is not None
@@ -229,9 +284,9 @@ def test_the_length_that_is_missing_is_told() -> None:
 
 
 def test_without_a_drawing_the_rest_is_checked() -> None:
-    verdict = check_trajectory(Hand(60, 0).draw(CORNERED[:2], 0).trajectory(), gantry())
-    assert verdict.passed
-    assert not any(finding.check.startswith("nothing") for finding in verdict.findings)
+    check_result = check_trajectory(Hand(60, 0).draw(CORNERED[:2], 0).trajectory(), gantry())
+    assert check_result.passed
+    assert not any(finding.check.startswith("nothing") for finding in check_result.findings)
 
 
 def test_a_single_sample_is_a_trajectory() -> None:
@@ -245,24 +300,26 @@ def test_a_wider_tolerance_lets_more_pass() -> None:
 
 
 def test_text_and_json_say_the_same() -> None:
-    verdict = check_trajectory(bumped(0, FIRST + 10, 0.2), gantry(), DRAWING)
-    lines = verdict.text().splitlines()
-    assert len(lines) == len(verdict.findings) + 1
+    check_result = check_trajectory(bumped(0, FIRST + 10, 0.2), gantry(), DRAWING)
+    lines = check_result.text().splitlines()
+    assert len(lines) == len(check_result.findings) + 1
     assert lines[-1] == "FAILED: 1 fault"
     (line,) = [line for line in lines if line.startswith("FAULT")]
     assert "tip on the paper while the pen is down: 0.19999 of 0.05 mm" in line
     assert "stroke 0" in line
-    values = json.loads(json.dumps(verdict.as_dict(), allow_nan=False))
+    values = json.loads(json.dumps(check_result.as_dict(), allow_nan=False))
     assert values["passed"] is False
     assert [one["check"] for one in values["findings"] if not one["passed"]] == [
-        "tip on the paper while the pen is down"]
-    assert Verdict(()).text() == "passed"
+        "tip on the paper while the pen is down"
+    ]
+    assert CheckResult(()).text() == "passed"
 
 
 def test_lines_read_well() -> None:
     place = Place(1.25, 125, 134, "q2", 3, (10.0, 20.0, 0.0), (4.0, 5.0))
     assert str(Finding("velocity", False, 401.0, 400.0, "deg/s", place)) == (
         "FAULT velocity of q2: 401 of 400 deg/s (stroke 3, 1.250 s, line 134, tip at (10.00, 20.00, 0.00) mm, "
-        "in the drawing (4.00, 5.00))")
+        "in the drawing (4.00, 5.00))"
+    )
     assert str(Finding("pen up at the first sample", True)) == "ok    pen up at the first sample"
     assert str(Finding("highest tip", True, 5.0, unit="mm", is_note=True)) == "note  highest tip: 5 mm"

@@ -30,10 +30,15 @@ def placed(linear: FloatArray, placement: Placement = Placement()) -> Trajectory
     return replace(hand().trajectory(), svg_to_arm_mm=(a, b, c, d, 100.0, 50.0), placement=placement)
 
 
-@given(scale=st.floats(1, 10), angle_deg=st.floats(-360, 360), mirror=st.booleans(),
-       stretch=st.tuples(st.floats(0.5, 2), st.floats(0.5, 2)))
+@given(
+    scale=st.floats(1, 10),
+    angle_deg=st.floats(-360, 360),
+    mirror=st.booleans(),
+    stretch=st.tuples(st.floats(0.5, 2), st.floats(0.5, 2)),
+)
 def test_a_page_may_be_turned_and_scaled_whatever_its_own_coordinates(
-        scale: float, angle_deg: float, mirror: bool, stretch: tuple[float, float]) -> None:
+    scale: float, angle_deg: float, mirror: bool, stretch: tuple[float, float]
+) -> None:
     angle = np.radians(angle_deg)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     page = np.diag(stretch)
@@ -45,30 +50,34 @@ def test_a_page_may_be_turned_and_scaled_whatever_its_own_coordinates(
     assert [one.check for one in map_findings(placed(linear, other), drawing, 0.05)] == ["svg_to_arm_mm"]
     assert not map_findings(placed(linear, other), None, 0.05)[0].passed
     sheared = linear @ np.array([[1.0, 0.1], [0.0, 1.0]])
-    assert "svg_to_arm_mm" in {one.check for one in map_findings(placed(sheared, told), drawing, 0.05)
-                               if not one.passed}
+    assert "svg_to_arm_mm" in {
+        one.check for one in map_findings(placed(sheared, told), drawing, 0.05) if not one.passed
+    }
 
 
-@pytest.mark.parametrize(("told", "wanted"), [
-    (Placement(), set()),
-    (Placement(scale=1.0, rotate_deg=0.0), set()),
-    (Placement(rotate_deg=360.0), set()),
-    (Placement(scale=1.01), {"scale"}),
-    (Placement(scale=-1.0), {"scale"}),
-    (Placement(rotate_deg=90.0), {"rotation"}),
-    (Placement(rotate_deg=0.2), {"rotation"}),
-    (Placement(mirror=True), {"svg_to_arm_mm"}),
-    (Placement(canvas_mm=(55, 105, -30, 15), margin_mm=5), set()),
-    (Placement(canvas_mm=(55, 105, -30, 15), margin_mm=5.1), {"within the canvas"}),
-    (Placement(canvas_mm=(61, 105, -30, 15)), {"within the canvas"}),
-    (Placement(canvas_mm=(50, 99, -30, 15)), {"within the canvas"}),
-])
+@pytest.mark.parametrize(
+    ("told", "wanted"),
+    [
+        (Placement(), set()),
+        (Placement(scale=1.0, rotate_deg=0.0), set()),
+        (Placement(rotate_deg=360.0), set()),
+        (Placement(scale=1.01), {"scale"}),
+        (Placement(scale=-1.0), {"scale"}),
+        (Placement(rotate_deg=90.0), {"rotation"}),
+        (Placement(rotate_deg=0.2), {"rotation"}),
+        (Placement(mirror=True), {"svg_to_arm_mm"}),
+        (Placement(canvas_mm=(55, 105, -30, 15), margin_mm=5), set()),
+        (Placement(canvas_mm=(55, 105, -30, 15), margin_mm=5.1), {"within the canvas"}),
+        (Placement(canvas_mm=(61, 105, -30, 15)), {"within the canvas"}),
+        (Placement(canvas_mm=(50, 99, -30, 15)), {"within the canvas"}),
+    ],
+)
 def test_what_the_header_tells_has_to_be_so(told: Placement, wanted: set[str]) -> None:
     assert faults(replace(hand().trajectory(), placement=told)) == wanted
 
 
 def test_without_the_drawing_a_mirror_and_the_canvas_are_seen() -> None:
-    mirrored = replace(hand().trajectory(), svg_to_arm_mm=(0, .5, -.5, 0, 100, 50))
+    mirrored = replace(hand().trajectory(), svg_to_arm_mm=(0, 0.5, -0.5, 0, 100, 50))
     assert faults(mirrored, None) == {"svg_to_arm_mm"}
     small = replace(hand().trajectory(), placement=Placement(canvas_mm=(61, 105, -30, 15)))
     assert faults(small, None) == {"within the canvas"}
@@ -87,20 +96,23 @@ SHORT_MM = float(np.hypot(20, 5))
 
 def test_what_was_left_out_as_asked_is_told() -> None:
     trajectory = replace(without("short", "dot"), left_out=LeftOut(SHORT_MM, 1))
-    verdict = check_trajectory(trajectory, gantry(), DRAWING)
-    assert verdict.passed
-    assert "ok    nothing missing: left out as asked: 20.6 mm and 1 tap" in verdict.text()
+    check_result = check_trajectory(trajectory, gantry(), DRAWING)
+    assert check_result.passed
+    assert "ok    nothing missing: left out as asked: 20.6 mm and 1 tap" in check_result.text()
 
 
-@pytest.mark.parametrize(("missing", "told"), [
-    (("short", "dot"), LeftOut(SHORT_MM, 0)),
-    (("short", "dot"), LeftOut(0.0, 1)),
-    (("short",), LeftOut(SHORT_MM - 1, 0)),
-    (("cornered",), LeftOut(SHORT_MM, 0)),
-    (("cornered", "short"), LeftOut(40.0, 0)),
-    (("short",), LeftOut(1e6, 0)),
-    (("short",), LeftOut(SHORT_MM, 1)),
-    ((), LeftOut(SHORT_MM, 0)),
-])
+@pytest.mark.parametrize(
+    ("missing", "told"),
+    [
+        (("short", "dot"), LeftOut(SHORT_MM, 0)),
+        (("short", "dot"), LeftOut(0.0, 1)),
+        (("short",), LeftOut(SHORT_MM - 1, 0)),
+        (("cornered",), LeftOut(SHORT_MM, 0)),
+        (("cornered", "short"), LeftOut(40.0, 0)),
+        (("short",), LeftOut(1e6, 0)),
+        (("short",), LeftOut(SHORT_MM, 1)),
+        ((), LeftOut(SHORT_MM, 0)),
+    ],
+)
 def test_other_than_told_is_found(missing: tuple[str, ...], told: LeftOut) -> None:
     assert faults(replace(without(*missing), left_out=told)) == {"nothing missing"}

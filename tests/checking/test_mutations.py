@@ -45,9 +45,13 @@ def test_a_seeded_fault_is_found(kind: str, sheet: Sheet, tmp_path: Path) -> Non
 @pytest.mark.parametrize("seed", range(8))
 def test_a_sound_trajectory_of_a_random_drawing_passes(seed: int, tmp_path: Path) -> None:
     rng = np.random.default_rng(seed)
-    settings = PlanSettings(arm=str(rng.choice(["drawing_arm", "scara"])), rate_hz=float(rng.choice([100.0, 250.0])),
-                            rotate_deg=float(rng.choice([0.0, 30.0])), skip_unreachable=bool(seed % 2),
-                            fit=seed % 4 != 3)
+    settings = PlanSettings(
+        arm=str(rng.choice(["drawing_arm", "scara"])),
+        rate_hz=float(rng.choice([100.0, 250.0])),
+        rotate_deg=float(rng.choice([0.0, 30.0])),
+        skip_unreachable=bool(seed % 2),
+        fit=seed % 4 != 3,
+    )
     try:
         sound = planned(tmp_path, random_drawing(rng, 3), settings, decimals=int(rng.choice([6, 9])))
     except PlannerError:

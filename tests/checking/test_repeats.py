@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planner.checking.check import check_trajectory
-from planner.checking.verdict import Finding
+from planner.checking.check_result import Finding
 from tests.checking.rig import Hand, drawing_of, gantry
 
 Line = Sequence[tuple[float, float]]
@@ -18,7 +18,7 @@ FRAME: Line = ((60, -60), (60, 60), (180, 60), (180, -60), (60, -60))
 """Much line, among which a little more is nothing."""
 
 
-def verdict_on(drawn: Sequence[Line], wanted: Sequence[Line]) -> dict[str, Finding]:
+def check_result_on(drawn: Sequence[Line], wanted: Sequence[Line]) -> dict[str, Finding]:
     hand = Hand(60, 0)
     for stroke, line in enumerate(drawn):
         hand.draw(line, stroke)
@@ -51,7 +51,7 @@ REPEATED: dict[str, tuple[Sequence[Line], Sequence[Line]]] = {
 @pytest.mark.parametrize("kind", REPEATED)
 def test_what_is_repeated_is_found(kind: str) -> None:
     drawn, wanted = REPEATED[kind]
-    assert set(verdict_on(drawn, wanted)) == {"nothing twice"}
+    assert set(check_result_on(drawn, wanted)) == {"nothing twice"}
 
 
 SOUND: dict[str, tuple[Sequence[Line], Sequence[Line]]] = {
@@ -62,16 +62,15 @@ SOUND: dict[str, tuple[Sequence[Line], Sequence[Line]]] = {
     "a line that crosses itself": ([((90, 0), (110, 20), (110, 0), (90, 20))],) * 2,
     "back and forth": ([(*dash(5), (100, 10))],) * 2,
     "a closed line begun elsewhere": ([FRAME], [(*FRAME[2:], *FRAME[1:3])]),
-    "a closed line begun within a side": (
-        [((60, 0), *FRAME[1:], (60, 0))], [FRAME]),
+    "a closed line begun within a side": ([((60, 0), *FRAME[1:], (60, 0))], [FRAME]),
     "a line in two parts": ([((60, 0), (70, 5)), ((70, 5), (80, 10))], [((60, 0), (80, 10))]),
     "two lines in one stroke": ([((60, 0), (70, 5), (80, 0))], [((60, 0), (70, 5)), ((80, 0), (70, 5))]),
     "ends joined over a gap of the tolerance": (
-        [((60, 0), (70, 0), (70.04, 0), (80, 0))], [((60, 0), (70, 0)), ((70.04, 0), (80, 0))]),
-    "hatch closer than the tolerance": (
-        [((80, k / 50), (84, k / 50)) for k in range(6)],) * 2,
-    "hatch to and fro in one stroke": (
-        [[(80 + 4 * ((k + 1) // 2 % 2), k // 2 / 20) for k in range(10)]],) * 2,
+        [((60, 0), (70, 0), (70.04, 0), (80, 0))],
+        [((60, 0), (70, 0)), ((70.04, 0), (80, 0))],
+    ),
+    "hatch closer than the tolerance": ([((80, k / 50), (84, k / 50)) for k in range(6)],) * 2,
+    "hatch to and fro in one stroke": ([[(80 + 4 * ((k + 1) // 2 % 2), k // 2 / 20) for k in range(10)]],) * 2,
     "dashes": ([((80 + k / 5, 5), (80.08 + k / 5, 5)) for k in range(6)],) * 2,
 }
 
@@ -79,7 +78,7 @@ SOUND: dict[str, tuple[Sequence[Line], Sequence[Line]]] = {
 @pytest.mark.parametrize("kind", SOUND)
 def test_what_the_drawing_has_may_be_drawn(kind: str) -> None:
     drawn, wanted = SOUND[kind]
-    assert not verdict_on(drawn, wanted)
+    assert not check_result_on(drawn, wanted)
 
 
 @settings(max_examples=25)
@@ -87,7 +86,7 @@ def test_what_the_drawing_has_may_be_drawn(kind: str) -> None:
 def test_scribbles_pass_and_a_part_of_them_twice_does_not(seed: int, step_mm: float) -> None:
     steps = np.random.default_rng(seed).normal(0, step_mm, (12, 2))
     scribble = [(x, y) for x, y in np.array([100.0, 0.0]) + np.cumsum(steps, axis=0)]
-    assert "nothing twice" not in verdict_on([scribble], [scribble])
+    assert "nothing twice" not in check_result_on([scribble], [scribble])
     whole_mm = float(np.linalg.norm(np.diff(scribble, axis=0), axis=1).sum())
     apart = ((20, 20), (20 + whole_mm + 1, 20))
-    assert set(verdict_on([scribble, apart, apart], [scribble, apart])) == {"nothing twice"}
+    assert set(check_result_on([scribble, apart, apart], [scribble, apart])) == {"nothing twice"}

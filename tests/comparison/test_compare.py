@@ -1,4 +1,5 @@
-"""What holds for every method on every arm: postures meet their targets, and figures are recounted by brute force."""
+"""What holds for every method on every arm: configurations meet their targets, and figures are recounted by brute
+force."""
 
 from __future__ import annotations
 
@@ -12,7 +13,6 @@ import pytest
 
 from planner.arms.arm import Arm
 from planner.arms.arm_file import known_arms
-from planner.arms.frame_jacobian import chain_frames
 from planner.comparison.compare import Comparison, compare, default_start
 from planner.comparison.description import comparison_description
 from planner.comparison.figures import Figures, figures_of
@@ -21,7 +21,8 @@ from planner.comparison.methods import METHODS
 from planner.comparison.table import WIDTH, table_lines
 from planner.comparison.targets import TargetKind, Targets, random_targets, single_targets
 from planner.errors import TargetBeyondReach
-from planner.settings import PlanSettings, PostureWeights
+from planner.kinematics.frame_jacobian import chain_frames
+from planner.settings import ConfigurationWeights, PlanSettings
 from tests.arms.chains import load_once, tips_by_product
 
 NAMES = ["dls", "dls-drawing", "nlp", "closed-form", "path"]
@@ -53,7 +54,7 @@ def test_all_methods_on_random_targets(name: str) -> None:
             assert sum(failure.count for failure in result.failures) == missed
     path = comparison.results[-1].figures
     assert path.solved_share == 1.0 and path.repeat_deg is not None and path.repeat_deg < 1e-6
-    assert comparison.results[2].figures.outside_share == 0.0  # the programme keeps limits
+    assert comparison.results[2].figures.outside_share == 0.0  # the program keeps limits
     assert_readable(comparison)
 
 
@@ -63,8 +64,8 @@ def assert_targets_are_met(arm: Arm, targets: Targets, found: Measured, toleranc
     miss = np.linalg.norm(tips - targets.tips_mm[solved], axis=1)
     assert (miss <= tolerance_mm + 1e-9).all()
     np.testing.assert_allclose(found.error_mm[solved], miss, atol=1e-5)
-    free = list(arm.free_joints)
-    np.testing.assert_allclose(arm.complete(found.joints[solved][:, free]), found.joints[solved], atol=1e-12)
+    independent = list(arm.independent_joints)
+    np.testing.assert_allclose(arm.complete(found.joints[solved][:, independent]), found.joints[solved], atol=1e-12)
     if arm.pen.hold.value == "tool_axis":
         axes = chain_frames(arm, found.joints[solved])[:, -1, :3, :3] @ np.array(arm.pen.tool_axis)
         assert (np.abs(axes[:, :2]) < 0.011).all() and (axes[:, 2] < 0).all()  # to the sine that damping tolerates
@@ -73,8 +74,9 @@ def assert_targets_are_met(arm: Arm, targets: Targets, found: Measured, toleranc
 def assert_limits_are_recounted(arm: Arm, found: Measured, figures: Figures) -> None:
     outside, worst = 0, {"deg": 0.0, "mm": 0.0}
     for joints, solved in zip(found.joints.tolist(), found.solved.tolist(), strict=True):
-        over = [max(joint.minimum - value, value - joint.maximum)
-                for joint, value in zip(arm.joints, joints, strict=True)]
+        over = [
+            max(joint.minimum - value, value - joint.maximum) for joint, value in zip(arm.joints, joints, strict=True)
+        ]
         if solved and max(over) > 1e-9:
             outside += 1
         if solved:
@@ -94,8 +96,15 @@ def assert_readable(comparison: Comparison) -> None:
     described = json.loads(json.dumps(comparison_description(comparison), allow_nan=False))
     assert list(described) == ["arm", "targets", "start", "methods", "convergence"]
     for method in described["methods"]:
-        assert list(method) == ["method", "title", "tolerance_mm", "refusal",
-                                *[field.name for field in fields(Figures)], "failures", "postures"]
+        assert list(method) == [
+            "method",
+            "title",
+            "tolerance_mm",
+            "refusal",
+            *[field.name for field in fields(Figures)],
+            "failures",
+            "postures",
+        ]
     lines = table_lines(comparison)
     assert max(map(len, lines)) <= WIDTH
     assert lines[2].split() == ["DLS", "DLS", "NLP", "per", "closed", "path"]
@@ -108,7 +117,7 @@ def assert_readable(comparison: Comparison) -> None:
 def test_broken_limits_are_counted_and_the_recount_sees_them() -> None:
     whole = load_once("scara")
     targets = random_targets(whole, 20, 3)
-    found = measure(METHODS[1], whole, PostureWeights(), targets, default_start(whole, targets.kind))
+    found = measure(METHODS[1], whole, ConfigurationWeights(), targets, default_start(whole, targets.kind))
     first, second, *rest = whole.joints
     half = replace(second, maximum=float(np.median(found.joints[:, 1])))
     arm = replace(whole, joints=(first, half, *rest))
@@ -130,8 +139,9 @@ def test_iterations_of_single_targets_are_told_and_random_ones_are_not() -> None
     assert described["targets"] == {"kind": "single", "count": 2, "tips_mm": targets.tips_mm.tolist()}
     for method, result in zip(described["methods"], comparison.results, strict=True):
         assert result.measured is not None
-        tips = tips_by_product(arm, np.array([arm.from_file_units(list(posture.values()))
-                                              for posture in method["postures"]]))
+        tips = tips_by_product(
+            arm, np.array([arm.from_file_units(list(configuration.values())) for configuration in method["postures"]])
+        )
         assert np.linalg.norm(tips - targets.tips_mm, axis=1).max() <= method["tolerance_mm"] + 1e-9
         assert method["step_deg"] is method["repeat_deg"] is method["drawing_s"] is None
     assert_readable(comparison)
@@ -169,13 +179,19 @@ def test_cold_is_building_and_the_first_target_and_warm_is_the_quickest_run() ->
     ticks = count()
     arm = load_once("three_joint")
     targets = single_targets(np.array([[150.0, 20.0, 0.0], [120.0, -50.0, 0.0]]))
-    found = measure(METHODS[3], arm, PostureWeights(), targets, default_start(arm, targets.kind),
-                    clock=lambda: float(next(ticks)))
+    found = measure(
+        METHODS[3],
+        arm,
+        ConfigurationWeights(),
+        targets,
+        default_start(arm, targets.kind),
+        clock=lambda: float(next(ticks)),
+    )
     assert found.cold_s == 1.0 and found.warm_s == 0.5
 
 
 def along_a_line(arm: Arm, seed: int, n: int = 12) -> tuple[Targets, Measured]:
-    """Made-up postures along three strokes, a few of them unsolved."""
+    """Made-up configurations along three strokes, a few of them unsolved."""
     random = np.random.default_rng(seed)
     firsts = np.array([0, 5, 6])
     along = np.concatenate((0.5 * np.arange(5), [0.0], 0.8 * np.arange(n - 6)))
@@ -183,8 +199,16 @@ def along_a_line(arm: Arm, seed: int, n: int = 12) -> tuple[Targets, Measured]:
     joints, again = (random.uniform(-2, 2, (n, arm.n_joints)) for _ in range(2))
     solved = np.ones(n, dtype=bool)
     solved[random.integers(n)] = False
-    return targets, Measured(joints, solved, np.arange(n, dtype=float), random.uniform(size=n), again,
-                             random.uniform(size=n) > 0.2, 0.1, 0.001)
+    return targets, Measured(
+        joints,
+        solved,
+        np.arange(n, dtype=float),
+        random.uniform(size=n),
+        again,
+        random.uniform(size=n) > 0.2,
+        0.1,
+        0.001,
+    )
 
 
 @pytest.mark.parametrize("name", ["scara", "three_joint"])
@@ -198,16 +222,27 @@ def test_figures_along_a_drawing_are_recounted(name: str, seed: int) -> None:
         chosen = [index for index, joint in enumerate(arm.joints) if joint.file_unit == unit]
         q = arm.to_file_units(found.joints)[:, chosen]
         again = arm.to_file_units(found.again)[:, chosen]
-        steps = [abs(q[i + 1] - q[i]).max() for c in courses for i in c[:-1]
-                 if found.solved[i] and found.solved[i + 1] and chosen]
-        bends = [value for c in courses for i in c[1:-1] if found.solved[i - 1:i + 2].all()
-                 for value in (q[i + 1] - 2 * q[i] + q[i - 1]) / (targets.along_mm[i] - targets.along_mm[i - 1]) ** 2]
-        changes = [abs(q[i] - again[i]).max() for i in range(len(q))
-                   if found.solved[i] and found.solved_again[i] and chosen]
+        steps = [
+            abs(q[i + 1] - q[i]).max()
+            for c in courses
+            for i in c[:-1]
+            if found.solved[i] and found.solved[i + 1] and chosen
+        ]
+        bends = [
+            value
+            for c in courses
+            for i in c[1:-1]
+            if found.solved[i - 1 : i + 2].all()
+            for value in (q[i + 1] - 2 * q[i] + q[i - 1]) / (targets.along_mm[i] - targets.along_mm[i - 1]) ** 2
+        ]
+        changes = [
+            abs(q[i] - again[i]).max() for i in range(len(q)) if found.solved[i] and found.solved_again[i] and chosen
+        ]
         if chosen:
             assert figures[f"step_{unit}"] == pytest.approx(max(steps))
             assert figures[f"roughness_{unit}_mm2"] == pytest.approx(
-                math.sqrt(sum(value ** 2 for value in bends) / len(bends)))
+                math.sqrt(sum(value**2 for value in bends) / len(bends))
+            )
             assert figures[f"repeat_{unit}"] == pytest.approx(max(changes))
         else:
             assert figures[f"step_{unit}"] is figures[f"roughness_{unit}_mm2"] is figures[f"repeat_{unit}"] is None

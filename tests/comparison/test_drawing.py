@@ -54,7 +54,7 @@ def test_strokes_that_a_method_is_refused_are_counted_with_the_reason() -> None:
     times = stroke_times(arm, [inside, outside, inside], PlanSettings(arm="scara"))
     assert np.isnan(times.seconds).tolist() == [False, True, False]
     assert times.seconds[0] == times.seconds[2] > 0
-    assert len(times.obstacles) == 1
+    assert len(times.infeasible_paths) == 1
 
 
 def test_a_drawing_is_placed_as_plan_places_it(drawing: Path) -> None:

@@ -20,8 +20,9 @@ STROKES = st.lists(st.lists(POINTS, min_size=1, max_size=5).map(np.array), min_s
 def test_targets_go_along_each_stroke_from_end_to_end(strokes: list[np.ndarray]) -> None:
     found = targets_along(strokes)
     assert len(found.firsts) == len(strokes)
-    for stroke, tips, along in zip(strokes, np.split(found.tips_mm, found.firsts[1:]),
-                                   np.split(found.along_mm, found.firsts[1:]), strict=True):
+    for stroke, tips, along in zip(
+        strokes, np.split(found.tips_mm, found.firsts[1:]), np.split(found.along_mm, found.firsts[1:]), strict=True
+    ):
         np.testing.assert_allclose(tips[[0, -1], :2], stroke[[0, -1]], atol=1e-9)
         assert (tips[:, 2] == 0).all() and along[0] == 0
         assert along[-1] == pytest.approx(np.hypot(*np.diff(stroke, axis=0).T).sum())
@@ -57,9 +58,11 @@ def test_random_targets_are_in_front_of_the_arm_on_the_paper_and_come_again_with
 
 
 def test_an_arm_that_hardly_reaches_the_paper_has_no_random_targets(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "usable_postures", lambda kinematics, free: np.zeros(len(free), dtype=bool))
+    monkeypatch.setattr(
+        module, "usable_configurations", lambda kinematics, independent: np.zeros(len(independent), dtype=bool)
+    )
     monkeypatch.setattr(module, "_MOST_DRAWS", 2)
-    with pytest.raises(PlanError, match="of 8192 random postures only 0"):
+    with pytest.raises(PlanError, match="of 8192 random configurations only 0"):
         random_targets(load_once("scara"), 3, 0)
 
 

@@ -19,8 +19,7 @@ HALF_A_DIGIT = 0.5e-4 * (1 + 1e-6)
 
 def printed(index: int, column: str) -> list[float]:
     """With the errata put right."""
-    return [ERRATA.get((index, column, place), value)
-            for place, value in enumerate(getattr(ITERATIONS[index], column))]
+    return [ERRATA.get((index, column, place), value) for place, value in enumerate(getattr(ITERATIONS[index], column))]
 
 
 @pytest.fixture(scope="module")
@@ -37,17 +36,21 @@ def compared(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str, o
 def test_every_printed_figure_is_on_the_screen(compared: tuple[str, dict[str, object]]) -> None:
     lines = compared[0].splitlines()
     first = next(index for index, line in enumerate(lines) if line.startswith(" i    q1 deg"))
-    rows = [[float(cell) for cell in line.split()] for line in lines[first + 1:first + 1 + len(ITERATIONS)]]
+    rows = [[float(cell) for cell in line.split()] for line in lines[first + 1 : first + 1 + len(ITERATIONS)]]
     for index, row in enumerate(rows):
         assert row[0] == index
         assert row[1:6] == pytest.approx(printed(index, "angles_deg"), rel=0, abs=1.01e-4)  # either side's last digit
-        lengths_cm = [*ITERATIONS[index].position_cm, ITERATIONS[index].error_plane_cm,
-                      ITERATIONS[index].error_height_cm]
+        lengths_cm = [
+            *ITERATIONS[index].position_cm,
+            ITERATIONS[index].error_plane_cm,
+            ITERATIONS[index].error_height_cm,
+        ]
         assert row[6:] == pytest.approx([10 * value for value in lengths_cm], rel=0, abs=1.01e-3)
     assert lines[first + 1 + len(ITERATIONS)].startswith("The documents print the same figures")
-    assert lines[first + 2 + len(ITERATIONS):] == [
+    assert lines[first + 2 + len(ITERATIONS) :] == [
         "  iteration 1, q5: -20.7625 printed, -29.7625 by their equations",
-        "  iteration 2, q1: 28.5132 printed, 28.5142 by their equations"]
+        "  iteration 2, q1: 28.5132 printed, 28.5142 by their equations",
+    ]
 
 
 def test_every_printed_figure_is_in_the_json(compared: tuple[str, dict[str, object]]) -> None:
@@ -59,9 +62,11 @@ def test_every_printed_figure_is_in_the_json(compared: tuple[str, dict[str, obje
     assert towards["converged"] and towards["target_mm"] == [53.0, 47.8, 0.0]
     assert [row["i"] for row in towards["iterations"]] == list(range(10))
     for index, row in enumerate(towards["iterations"]):
-        for column, values in (("angles_deg", row["joints"].values()),
-                               ("position_cm", np.array(row["tip_mm"]) / 10),
-                               ("error_cm", np.array(row["error_mm"]) / 10)):
+        for column, values in (
+            ("angles_deg", row["joints"].values()),
+            ("position_cm", np.array(row["tip_mm"]) / 10),
+            ("error_cm", np.array(row["error_mm"]) / 10),
+        ):
             assert list(values) == pytest.approx(printed(index, column), rel=0, abs=HALF_A_DIGIT)
         assert row["error_along_mm"] / 10 == pytest.approx(ITERATIONS[index].error_plane_cm, rel=0, abs=HALF_A_DIGIT)
         assert row["error_across_mm"] / 10 == pytest.approx(ITERATIONS[index].error_height_cm, rel=0, abs=HALF_A_DIGIT)
@@ -73,8 +78,10 @@ def test_every_printed_figure_is_in_the_json(compared: tuple[str, dict[str, obje
 
 def test_another_start_is_another_way_there(tmp_path: Path) -> None:
     target = tmp_path / "other.json"
-    assert main(["compare", "--target", "5.3cm", "4.78cm", "--start", "10", "70", "-40", "-50", "--json",
-                 str(target)]) == 0
+    assert (
+        main(["compare", "--target", "5.3cm", "4.78cm", "--start", "10", "70", "-40", "-50", "--json", str(target)])
+        == 0
+    )
     found = json.loads(target.read_text())
     assert list(found["start"].values()) == pytest.approx([10, 70, -40, -50, -70])
     assert found["convergence"][0]["iterations"][0]["joints"] == found["start"]

@@ -16,7 +16,8 @@ IDENTITY = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 coordinate = st.floats(-100, 100).map(lambda value: round(value, 3))
 point = st.tuples(coordinate, coordinate)
 affines = st.tuples(*[st.floats(-3, 3).map(lambda value: round(value, 12))] * 6).map(
-    lambda values: np.array(values).reshape(2, 3))  # rounded, as shapely divides by lengths
+    lambda values: np.array(values).reshape(2, 3)
+)  # rounded, as shapely divides by lengths
 
 
 @st.composite
@@ -33,15 +34,16 @@ def outlines(draw: st.DrawFn) -> Outline:
 def on_curve(outline: Outline, affine: FloatArray, count: int = 400) -> FloatArray:
     t = np.linspace(0.0, 1.0, count)[:, np.newaxis, np.newaxis]
     b = np.moveaxis(outline.beziers, 1, 0)
-    points = (1 - t) ** 3 * b[0] + 3 * (1 - t) ** 2 * t * b[1] + 3 * (1 - t) * t ** 2 * b[2] + t ** 3 * b[3]
+    points = (1 - t) ** 3 * b[0] + 3 * (1 - t) ** 2 * t * b[1] + 3 * (1 - t) * t**2 * b[2] + t**3 * b[3]
     moved: FloatArray = np.moveaxis(points, 0, 1).reshape(-1, 2) @ affine[:, :2].T + affine[:, 2]
     return moved
 
 
 @settings(deadline=None, max_examples=40)
 @given(outlines(), affines, st.sampled_from([0.01, 0.05, 1.0]))
-def test_polyline_and_curve_are_within_the_tolerance_both_ways(outline: Outline, affine: FloatArray,
-                                                               tolerance_mm: float) -> None:
+def test_polyline_and_curve_are_within_the_tolerance_both_ways(
+    outline: Outline, affine: FloatArray, tolerance_mm: float
+) -> None:
     polyline = flatten(outline, affine, tolerance_mm)
     curve = on_curve(outline, affine)
     if len(polyline) == 1:

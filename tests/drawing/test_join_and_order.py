@@ -17,9 +17,11 @@ from planner.drawing.order import Metric, order_strokes, travel
 
 ORIGIN = np.zeros(2)
 grid = st.tuples(st.integers(0, 6), st.integers(0, 6))
-METRICS = [Metric(lambda points: points),
-           Metric(lambda points: np.column_stack([points[:, 0], 3.0 * points[:, 1], points.sum(axis=1)]), p=np.inf),
-           Metric(lambda points: points, exponent=1 / 3)]
+METRICS = [
+    Metric(lambda points: points),
+    Metric(lambda points: np.column_stack([points[:, 0], 3.0 * points[:, 1], points.sum(axis=1)]), p=np.inf),
+    Metric(lambda points: points, exponent=1 / 3),
+]
 
 
 def without_repeats(points: list[tuple[int, int]]) -> FloatArray:
@@ -41,8 +43,12 @@ def test_joining_keeps_every_segment(strokes: list[FloatArray]) -> None:
     joined = join_strokes(strokes)
     assert segments(joined) == segments(strokes)
     assert len(joined) <= len(strokes)
-    ends = [tuple(point) for stroke in joined if len(stroke) > 1 and not is_closed(stroke)
-            for point in stroke[[0, -1]].tolist()]
+    ends = [
+        tuple(point)
+        for stroke in joined
+        if len(stroke) > 1 and not is_closed(stroke)
+        for point in stroke[[0, -1]].tolist()
+    ]
     owners = {}
     for index, end in enumerate(ends):
         # Two ends left in one place belong to one and the same stroke.
@@ -50,17 +56,22 @@ def test_joining_keeps_every_segment(strokes: list[FloatArray]) -> None:
 
 
 def test_ends_meet_either_way_round_within_the_tolerance() -> None:
-    strokes = [np.array([[0, 0], [1, 0]]), np.array([[2, 0], [1.03, 0]]), np.array([[2, 0.04], [3, 0]]),
-               np.array([[3.06, 0], [4, 0]])]
+    strokes = [
+        np.array([[0, 0], [1, 0]]),
+        np.array([[2, 0], [1.03, 0]]),
+        np.array([[2, 0.04], [3, 0]]),
+        np.array([[3.06, 0], [4, 0]]),
+    ]
     joined = join_strokes(strokes, 0.05)
     assert [stroke.tolist() for stroke in joined] == [
-        [[0, 0], [1, 0], [1.03, 0], [2, 0], [2, 0.04], [3, 0]], [[3.06, 0], [4, 0]]]
+        [[0, 0], [1, 0], [1.03, 0], [2, 0], [2, 0.04], [3, 0]],
+        [[3.06, 0], [4, 0]],
+    ]
 
 
 def test_crossing_lines_go_straight_on() -> None:
     arms = [np.array([[0.0, 0.0], end]) for end in ([1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0])]
-    assert [stroke.tolist() for stroke in join_strokes(arms)] == [
-        [[-1, 0], [0, 0], [1, 0]], [[0, -1], [0, 0], [0, 1]]]
+    assert [stroke.tolist() for stroke in join_strokes(arms)] == [[[-1, 0], [0, 0], [1, 0]], [[0, -1], [0, 0], [0, 1]]]
 
 
 def test_a_loop_of_pieces_closes_and_closed_strokes_and_taps_stay() -> None:
@@ -100,8 +111,11 @@ def test_ordering_keeps_every_segment_and_never_lengthens_the_way(metric: Metric
 def test_small_tours_are_close_to_the_best(seed: int) -> None:
     generator = np.random.default_rng(seed)
     strokes = [generator.uniform(0, 10, (2, 2)) for _ in range(5)]
-    best = min(travel([stroke[::-1] if turned else stroke for stroke, turned in zip(row, turns, strict=True)], ORIGIN)
-               for row in itertools.permutations(strokes) for turns in itertools.product((False, True), repeat=5))
+    best = min(
+        travel([stroke[::-1] if turned else stroke for stroke, turned in zip(row, turns, strict=True)], ORIGIN)
+        for row in itertools.permutations(strokes)
+        for turns in itertools.product((False, True), repeat=5)
+    )
     assert travel(order_strokes(strokes, ORIGIN), ORIGIN) <= 1.15 * best + 1e-9
 
 

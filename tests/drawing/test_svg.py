@@ -50,53 +50,82 @@ def along(found: Drawing) -> FloatArray:
     """Many points on all curves."""
     control = np.concatenate([outline.beziers for outline in found.outlines])[:, np.newaxis]
     t = np.linspace(0.0, 1.0, 33)[:, np.newaxis]
-    points: FloatArray = ((1 - t) ** 3 * control[:, :, 0] + 3 * (1 - t) ** 2 * t * control[:, :, 1]
-                          + 3 * (1 - t) * t ** 2 * control[:, :, 2] + t ** 3 * control[:, :, 3])
+    points: FloatArray = (
+        (1 - t) ** 3 * control[:, :, 0]
+        + 3 * (1 - t) ** 2 * t * control[:, :, 1]
+        + 3 * (1 - t) * t**2 * control[:, :, 2]
+        + t**3 * control[:, :, 3]
+    )
     return points.reshape(-1, 2)
 
 
 LINE = '<path d="M1 2L3 4" {}/>'
 
 
-@pytest.mark.parametrize(("body", "expected"), [
-    ('<path d="M1 2L3 4"/>', [[(1, 2), (3, 4)]]),
-    ('<path d="m1 2 3 4h1v1H0V0"/>', [[(1, 2), (4, 6), (5, 6), (5, 7), (0, 7), (0, 0)]]),
-    ('<path d="M.5.5 1e1-3"/>', [[(0.5, 0.5), (10, -3)]]),
-    ('<path d="M 0. 0. L 5. 6."/>', [[(0, 0), (5, 6)]]),
-    ('<path d="M1 1L2 1 2 2zm3 0l1 0"/>', [[(1, 1), (2, 1), (2, 2), (1, 1)], [(4, 1), (5, 1)]]),
-    ('<path d="M1 1L2 1 2 2 1 1z"/>', [[(1, 1), (2, 1), (2, 2), (1, 1)]]),
-    ('<path d="M1 1L2 2 M9 9"/>', [[(1, 1), (2, 2)]]),
-    ('<path d="M1 1L2 2 3"/>', [[(1, 1), (2, 2)]]),
-    ('<path d="M1 1Q2 2 3 1T5 1"/>', [[(1, 1), (3, 1), (5, 1)]]),
-    ('<path d="M1 1C1 2 3 2 3 1S5 0 5 1"/>', [[(1, 1), (3, 1), (5, 1)]]),
-    ('<line x1="1" y1="2" x2="3" y2="4" stroke="red"/>', [[(1, 2), (3, 4)]]),
-    ('<polyline points="1,1 2,2 3,1"/>', [[(1, 1), (2, 2), (3, 1)]]),
-    ('<polygon points="1,1 2,2 3,1"/>', [[(1, 1), (2, 2), (3, 1), (1, 1)]]),
-    ('<rect x="1" y="2" width="3" height="4"/>', [[(1, 2), (4, 2), (4, 6), (1, 6), (1, 2)]]),
-    ('<rect x="10%" y="20%" width="10%" height="10mm" rx="0"/>',
-     [[(10, 20), (20, 20), (20, 57.795276), (10, 57.795276), (10, 20)]]),
-    ('<rect x="1rem" width="25.4Q" height="1"/>', [[(16, 0), (40, 0), (40, 1), (16, 1), (16, 0)]]),
-    ('<rect width="3" height="4" rx="-1"/>', [[(0, 0), (3, 0), (3, 4), (0, 4), (0, 0)]]),
-    ('<g transform="translate(10 20) scale(2)"><path transform="rotate(90)" d="M1 0L2 0"/></g>',
-     [[(10, 22), (10, 24)]]),
-    ('<defs><path id="p" d="M1 2L3 4"/></defs><use href="#p" x="10"/><use xlink:href="#p" y="1"/>',
-     [[(11, 2), (13, 4)], [(1, 3), (3, 5)]]),
-    ('<symbol id="s" viewBox="0 0 1 1"><path d="M0 0L1 1"/></symbol><use href="#s" width="10" height="10"/>',
-     [[(0, 0), (10, 10)]]),
-    ('<svg x="10" y="10" width="20" height="20" viewBox="0 0 2 2"><path d="M0 0L2 2"/></svg>', [[(10, 10), (30, 30)]]),
-    ('<switch><path systemLanguage="xx" d="M8 8L9 9"/><path d="M1 2L3 4"/></switch>', [[(1, 2), (3, 4)]]),
-    ('<style>.a{display:none} g > .b{visibility:hidden}</style><path class="a" d="M8 8L9 9"/>'
-     '<g><path class="b" d="M8 8L9 9"/></g><path d="M1 2L3 4"/>', [[(1, 2), (3, 4)]]),
-    ('<g visibility="hidden"><path d="M8 8L9 9"/><path visibility="visible" d="M1 2L3 4"/></g>', [[(1, 2), (3, 4)]]),
-    ('<g opacity="0"><path d="M8 8L9 9"/></g>' + LINE.format('fill="none" stroke="red"'), [[(1, 2), (3, 4)]]),
-    ('<path fill="none" d="M8 8L9 9"/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
-    ('<path fill="none" stroke="red" stroke-width="0" d="M8 8L9 9"/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
-    ('<path fill-opacity="0" d="M8 8L9 9"/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
-    ('<marker id="m"><path d="M0 0L1 0"/></marker><path marker-end="url(#m)" stroke="red" d="M1 2L3 4"/>',
-     [[(1, 2), (3, 4)], [(3, 4), (4, 4)]]),
-    ('<circle r="-1"/><ellipse rx="-1" ry="-1"/><rect width="-1" height="2"/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
-    ('<path d=""/><path/><circle/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
-])
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ('<path d="M1 2L3 4"/>', [[(1, 2), (3, 4)]]),
+        ('<path d="m1 2 3 4h1v1H0V0"/>', [[(1, 2), (4, 6), (5, 6), (5, 7), (0, 7), (0, 0)]]),
+        ('<path d="M.5.5 1e1-3"/>', [[(0.5, 0.5), (10, -3)]]),
+        ('<path d="M 0. 0. L 5. 6."/>', [[(0, 0), (5, 6)]]),
+        ('<path d="M1 1L2 1 2 2zm3 0l1 0"/>', [[(1, 1), (2, 1), (2, 2), (1, 1)], [(4, 1), (5, 1)]]),
+        ('<path d="M1 1L2 1 2 2 1 1z"/>', [[(1, 1), (2, 1), (2, 2), (1, 1)]]),
+        ('<path d="M1 1L2 2 M9 9"/>', [[(1, 1), (2, 2)]]),
+        ('<path d="M1 1L2 2 3"/>', [[(1, 1), (2, 2)]]),
+        ('<path d="M1 1Q2 2 3 1T5 1"/>', [[(1, 1), (3, 1), (5, 1)]]),
+        ('<path d="M1 1C1 2 3 2 3 1S5 0 5 1"/>', [[(1, 1), (3, 1), (5, 1)]]),
+        ('<line x1="1" y1="2" x2="3" y2="4" stroke="red"/>', [[(1, 2), (3, 4)]]),
+        ('<polyline points="1,1 2,2 3,1"/>', [[(1, 1), (2, 2), (3, 1)]]),
+        ('<polygon points="1,1 2,2 3,1"/>', [[(1, 1), (2, 2), (3, 1), (1, 1)]]),
+        ('<rect x="1" y="2" width="3" height="4"/>', [[(1, 2), (4, 2), (4, 6), (1, 6), (1, 2)]]),
+        (
+            '<rect x="10%" y="20%" width="10%" height="10mm" rx="0"/>',
+            [[(10, 20), (20, 20), (20, 57.795276), (10, 57.795276), (10, 20)]],
+        ),
+        ('<rect x="1rem" width="25.4Q" height="1"/>', [[(16, 0), (40, 0), (40, 1), (16, 1), (16, 0)]]),
+        ('<rect width="3" height="4" rx="-1"/>', [[(0, 0), (3, 0), (3, 4), (0, 4), (0, 0)]]),
+        (
+            '<g transform="translate(10 20) scale(2)"><path transform="rotate(90)" d="M1 0L2 0"/></g>',
+            [[(10, 22), (10, 24)]],
+        ),
+        (
+            '<defs><path id="p" d="M1 2L3 4"/></defs><use href="#p" x="10"/><use xlink:href="#p" y="1"/>',
+            [[(11, 2), (13, 4)], [(1, 3), (3, 5)]],
+        ),
+        (
+            '<symbol id="s" viewBox="0 0 1 1"><path d="M0 0L1 1"/></symbol><use href="#s" width="10" height="10"/>',
+            [[(0, 0), (10, 10)]],
+        ),
+        (
+            '<svg x="10" y="10" width="20" height="20" viewBox="0 0 2 2"><path d="M0 0L2 2"/></svg>',
+            [[(10, 10), (30, 30)]],
+        ),
+        ('<switch><path systemLanguage="xx" d="M8 8L9 9"/><path d="M1 2L3 4"/></switch>', [[(1, 2), (3, 4)]]),
+        (
+            '<style>.a{display:none} g > .b{visibility:hidden}</style><path class="a" d="M8 8L9 9"/>'
+            '<g><path class="b" d="M8 8L9 9"/></g><path d="M1 2L3 4"/>',
+            [[(1, 2), (3, 4)]],
+        ),
+        (
+            '<g visibility="hidden"><path d="M8 8L9 9"/><path visibility="visible" d="M1 2L3 4"/></g>',
+            [[(1, 2), (3, 4)]],
+        ),
+        ('<g opacity="0"><path d="M8 8L9 9"/></g>' + LINE.format('fill="none" stroke="red"'), [[(1, 2), (3, 4)]]),
+        ('<path fill="none" d="M8 8L9 9"/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
+        ('<path fill="none" stroke="red" stroke-width="0" d="M8 8L9 9"/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
+        ('<path fill-opacity="0" d="M8 8L9 9"/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
+        (
+            '<marker id="m"><path d="M0 0L1 0"/></marker><path marker-end="url(#m)" stroke="red" d="M1 2L3 4"/>',
+            [[(1, 2), (3, 4)], [(3, 4), (4, 4)]],
+        ),
+        (
+            '<circle r="-1"/><ellipse rx="-1" ry="-1"/><rect width="-1" height="2"/>' + LINE.format(""),
+            [[(1, 2), (3, 4)]],
+        ),
+        ('<path d=""/><path/><circle/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
+    ],
+)
 def test_what_is_visible_becomes_outlines(tmp_path: Path, body: str, expected: list[list[tuple[float, float]]]) -> None:
     found = drawing(tmp_path, body)
     assert corners(found) == expected
@@ -110,22 +139,27 @@ def test_a_subpath_of_no_length_is_a_tap(tmp_path: Path, data: str) -> None:
 
 
 def test_curves_of_an_outline_follow_each_other(tmp_path: Path) -> None:
-    found = drawing(tmp_path, '<rect x="3" y="4" width="20" height="10" rx="3"/>'
-                              '<path d="M1 1Q5 5 9 1A3 4 5 0 1 20 30z"/>')
+    found = drawing(
+        tmp_path, '<rect x="3" y="4" width="20" height="10" rx="3"/><path d="M1 1Q5 5 9 1A3 4 5 0 1 20 30z"/>'
+    )
     for outline in found.outlines:
         assert np.array_equal(outline.beziers[1:, 0], outline.beziers[:-1, 3])
         assert np.array_equal(outline.beziers[0, 0], outline.beziers[-1, 3])
 
 
 @pytest.mark.parametrize("transform", ["", "skewX(40)", "rotate(30) scale(3 .5)", "matrix(1 2 -.7 .4 5 6)"])
-@pytest.mark.parametrize(("body", "radii"), [
-    ('<circle cx="3" cy="4" r="7"/>', (7.0, 7.0)),
-    ('<ellipse cx="3" cy="4" rx="7px" ry="2"/>', (7.0, 2.0)),
-    ('<path d="M10 4A7 2 0 1 1-4 4 7 2 0 0110 4z"/>', (7.0, 2.0)),
-    ('<path d="m10 4a7 2 0 00-14 0a.7.2 0 0014 0"/>', (7.0, 2.0)),
-])
-def test_arcs_stay_ellipses_under_any_transform(tmp_path: Path, body: str, radii: tuple[float, float],
-                                                transform: str) -> None:
+@pytest.mark.parametrize(
+    ("body", "radii"),
+    [
+        ('<circle cx="3" cy="4" r="7"/>', (7.0, 7.0)),
+        ('<ellipse cx="3" cy="4" rx="7px" ry="2"/>', (7.0, 2.0)),
+        ('<path d="M10 4A7 2 0 1 1-4 4 7 2 0 0110 4z"/>', (7.0, 2.0)),
+        ('<path d="m10 4a7 2 0 00-14 0a.7.2 0 0014 0"/>', (7.0, 2.0)),
+    ],
+)
+def test_arcs_stay_ellipses_under_any_transform(
+    tmp_path: Path, body: str, radii: tuple[float, float], transform: str
+) -> None:
     body = f'<path d="M0 0L1 0M0 0L0 1" stroke="red"/>{body}'
     found = drawing(tmp_path, f'<g transform="{transform}">{body}</g>' if transform else body)
     axis_x, axis_y, *curves = found.outlines
@@ -172,21 +206,31 @@ def test_style_sheets_that_tell_shapes_apart_still_do(tmp_path: Path) -> None:
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" {}>'
 
 
-@pytest.mark.parametrize(("attributes", "page_px", "user_to_px"), [
-    ('width="96" height="192"', (96, 192), [[1, 0, 0], [0, 1, 0]]),
-    ('width="1in" height="50.8mm"', (96, 192), [[1, 0, 0], [0, 1, 0]]),
-    ('width="72pt" height="12pc"', (96, 192), [[1, 0, 0], [0, 1, 0]]),
-    ('viewBox="10 20 30 40"', (30, 40), [[1, 0, -10], [0, 1, -20]]),
-    ('width="60" viewBox="10 20 30 40"', (60, 80), [[2, 0, -20], [0, 2, -40]]),
-    ('height="80" viewBox="10 20 30 40"', (60, 80), [[2, 0, -20], [0, 2, -40]]),
-    ('width="60" height="40" viewBox="0 0 30 40"', (60, 40), [[1, 0, 15], [0, 1, 0]]),
-    ('width="60" height="40" viewBox="0 0 30 40" preserveAspectRatio="xMaxYMin"', (60, 40), [[1, 0, 30], [0, 1, 0]]),
-    ('width="60" height="40" viewBox="0 0 30 40" preserveAspectRatio="none"', (60, 40), [[2, 0, 0], [0, 1, 0]]),
-    ('width="60" height="40" viewBox="0 0 30 40" preserveAspectRatio="xMidYMax slice"', (60, 40),
-     [[2, 0, 0], [0, 2, -40]]),
-    ('width="2em" height="32" viewBox="0 0 1 1"', (32, 32), [[32, 0, 0], [0, 32, 0]]),
-    ("", (30, 40), [[1, 0, 0], [0, 1, 0]]),
-])
+@pytest.mark.parametrize(
+    ("attributes", "page_px", "user_to_px"),
+    [
+        ('width="96" height="192"', (96, 192), [[1, 0, 0], [0, 1, 0]]),
+        ('width="1in" height="50.8mm"', (96, 192), [[1, 0, 0], [0, 1, 0]]),
+        ('width="72pt" height="12pc"', (96, 192), [[1, 0, 0], [0, 1, 0]]),
+        ('viewBox="10 20 30 40"', (30, 40), [[1, 0, -10], [0, 1, -20]]),
+        ('width="60" viewBox="10 20 30 40"', (60, 80), [[2, 0, -20], [0, 2, -40]]),
+        ('height="80" viewBox="10 20 30 40"', (60, 80), [[2, 0, -20], [0, 2, -40]]),
+        ('width="60" height="40" viewBox="0 0 30 40"', (60, 40), [[1, 0, 15], [0, 1, 0]]),
+        (
+            'width="60" height="40" viewBox="0 0 30 40" preserveAspectRatio="xMaxYMin"',
+            (60, 40),
+            [[1, 0, 30], [0, 1, 0]],
+        ),
+        ('width="60" height="40" viewBox="0 0 30 40" preserveAspectRatio="none"', (60, 40), [[2, 0, 0], [0, 1, 0]]),
+        (
+            'width="60" height="40" viewBox="0 0 30 40" preserveAspectRatio="xMidYMax slice"',
+            (60, 40),
+            [[2, 0, 0], [0, 2, -40]],
+        ),
+        ('width="2em" height="32" viewBox="0 0 1 1"', (32, 32), [[32, 0, 0], [0, 32, 0]]),
+        ("", (30, 40), [[1, 0, 0], [0, 1, 0]]),
+    ],
+)
 def test_page(tmp_path: Path, attributes: str, page_px: tuple[float, float], user_to_px: list[list[float]]) -> None:
     found = drawing(tmp_path, '<path d="M0 0L30 40"/>', SVG.format(attributes))
     assert np.allclose(np.array(found.page_mm) / 25.4 * 96, page_px, rtol=1e-12)
@@ -194,36 +238,50 @@ def test_page(tmp_path: Path, attributes: str, page_px: tuple[float, float], use
     assert corners(found) == [[(0, 0), (30, 40)]]
 
 
-@pytest.mark.parametrize(("body", "skipped"), [
-    ("<text>a</text><text> </text>", {"text": 1}),
-    ('<g display="none"><text>a</text></g><defs><text>a</text></defs>', {}),
-    ('<defs><text id="t">a</text></defs><use href="#t"/><use href="#t"/>', {"text": 2}),
-    ('<image href="file:///etc/passwd" width="9" height="9"/><image xlink:href="http://x.invalid/"/>', {"image": 2}),
-    ("<foreignObject width='9' height='9'><p>a</p></foreignObject>", {"foreignObject": 1}),
-    ('<clipPath id="c"><rect width="5" height="5"/></clipPath><path clip-path="url(#c)" d="M1 1L9 9"/>',
-     {"clip path": 1}),
-    ('<clipPath id="c"><rect width="5" height="5"/></clipPath><path clip-path="url(#c)" d="M1 1L4 4"/>', {}),
-    ('<g transform="rotate(9)"><svg width="5" height="5"><path d="M1 1L4 4"/></svg></g>', {}),
-    ('<mask id="m"><rect width="5" height="5"/></mask><path mask="url(#m)" d="M1 1L9 9"/>', {"mask": 1}),
-    ('<path d="M1 1L1e300 5"/>', {"path with unusable numbers": 1}),
-    ('<circle r="1e300"/>', {"path with unusable numbers": 1}),
-    ('<path d="M1 1L2 2L NaN 5"/>', {"path with unreadable data": 1}),
-    ('<path stroke="red" stroke-dasharray="2" d="M1 1L9 9"/>', {"dash pattern": 1}),
-])
+@pytest.mark.parametrize(
+    ("body", "skipped"),
+    [
+        ("<text>a</text><text> </text>", {"text": 1}),
+        ('<g display="none"><text>a</text></g><defs><text>a</text></defs>', {}),
+        ('<defs><text id="t">a</text></defs><use href="#t"/><use href="#t"/>', {"text": 2}),
+        (
+            '<image href="file:///etc/passwd" width="9" height="9"/><image xlink:href="http://x.invalid/"/>',
+            {"image": 2},
+        ),
+        ("<foreignObject width='9' height='9'><p>a</p></foreignObject>", {"foreignObject": 1}),
+        (
+            '<clipPath id="c"><rect width="5" height="5"/></clipPath><path clip-path="url(#c)" d="M1 1L9 9"/>',
+            {"clip path": 1},
+        ),
+        ('<clipPath id="c"><rect width="5" height="5"/></clipPath><path clip-path="url(#c)" d="M1 1L4 4"/>', {}),
+        ('<g transform="rotate(9)"><svg width="5" height="5"><path d="M1 1L4 4"/></svg></g>', {}),
+        ('<mask id="m"><rect width="5" height="5"/></mask><path mask="url(#m)" d="M1 1L9 9"/>', {"mask": 1}),
+        ('<path d="M1 1L1e300 5"/>', {"path with unusable numbers": 1}),
+        ('<circle r="1e300"/>', {"path with unusable numbers": 1}),
+        ('<path d="M1 1L2 2L NaN 5"/>', {"path with unreadable data": 1}),
+        ('<path stroke="red" stroke-dasharray="2" d="M1 1L9 9"/>', {"dash pattern": 1}),
+    ],
+)
 def test_what_cannot_be_drawn_is_counted(tmp_path: Path, body: str, skipped: dict[str, int]) -> None:
     assert drawing(tmp_path, LINE.format("") + body).skipped == skipped
 
 
 def test_nothing_outside_is_used(tmp_path: Path) -> None:
     (tmp_path / "other.svg").write_text(f'{ROOT}<path id="p" d="M8 8L9 9"/></svg>')
-    body = ('<?xml-stylesheet href="other.css"?><style>@import url("other.css");</style>'
-            '<use href="other.svg#p"/><image href="other.svg"/>')
+    body = (
+        '<?xml-stylesheet href="other.css"?><style>@import url("other.css");</style>'
+        '<use href="other.svg#p"/><image href="other.svg"/>'
+    )
     assert corners(drawing(tmp_path, body + LINE.format(""))) == [[(1, 2), (3, 4)]]
 
 
 def test_public_document_type_without_subset_is_ignored(tmp_path: Path) -> None:
-    found = drawing(tmp_path, LINE.format(""), '<?xml version="1.0" encoding="ISO-8859-1"?><!DOCTYPE svg PUBLIC '
-                    '"-//W3C//DTD SVG 1.1//EN" "http://unreachable.invalid/svg11.dtd">' + ROOT)
+    found = drawing(
+        tmp_path,
+        LINE.format(""),
+        '<?xml version="1.0" encoding="ISO-8859-1"?><!DOCTYPE svg PUBLIC '
+        '"-//W3C//DTD SVG 1.1//EN" "http://unreachable.invalid/svg11.dtd">' + ROOT,
+    )
     assert corners(found) == [[(1, 2), (3, 4)]]
 
 
@@ -236,34 +294,42 @@ def test_zipped_and_unnamespaced_files(tmp_path: Path) -> None:
 BILLION = "".join(f'<g id="g{i}">' + f'<use href="#g{i - 1}"/>' * 10 + "</g>" for i in range(1, 12))
 
 
-@pytest.mark.parametrize(("data", "words"), [
-    (b"", "empty"),
-    (b" \n", "empty"),
-    (b"%PDF-1.4 nonsense", "this is a PDF, not an SVG"),
-    (b"\x00\x01\x02\xff", "not well-formed XML"),
-    (b'<?xml version="1.0" encoding="no-such"?><svg/>', "XML"),
-    (f"{ROOT}<path d='M1 1".encode(), "not well-formed XML"),
-    (f"{ROOT}<g>".encode(), "line 1"),
-    (b"<html><body/></html>", "outermost element is <html>"),
-    (b'<svg xmlns="urn:other"/>', "not an SVG"),
-    (b'<!DOCTYPE svg [<!ENTITY a "b">]>' + f"{ROOT}</svg>".encode(), "document type"),
-    (b'<!DOCTYPE svg [<!ENTITY a SYSTEM "file:///etc/passwd">]>' + f"{ROOT}<text>&a;</text></svg>".encode(),
-     "document type"),
-    (b'<!DOCTYPE svg SYSTEM "file:///etc/passwd">' + f"{ROOT}</svg>".encode(), "document type"),
-    (f'{ROOT}<use id="u" href="#u"/></svg>'.encode(), "refers to itself"),
-    (f'{ROOT}<g id="a"><use href="#b"/></g><g id="b"><use href="#a"/></g></svg>'.encode(), "refers to itself"),
-    (f'{ROOT}<path id="g0" d="M0 0L1 1"/>{BILLION}</svg>'.encode(), "multiply"),
-    ((ROOT + "<g>" * 5000 + "</g>" * 5000 + "</svg>").encode(), "deep"),
-    (b'<svg xmlns="http://www.w3.org/2000/svg" width="0" height="5"><path d="M0 0L1 1"/></svg>', "width, height"),
-    (b"\x1f\x8b" + b"x" * 50, "gzip"),
-    (gzip.compress(b"<svg/>" * 100)[:-12], "gzip"),
-    (gzip.compress(b" " * (SIZE_LIMIT_BYTES + 5)), f"limit of {SIZE_LIMIT_BYTES} bytes"),
-    (b" " * (SIZE_LIMIT_BYTES + 5), f"limit of {SIZE_LIMIT_BYTES} bytes"),
-    (f"{ROOT}</svg>".encode(), "nothing to draw: it has no shapes"),
-    (f'{ROOT}<path display="none" d="M0 0L1 1"/><circle r="-2"/><text>a</text></svg>'.encode(),
-     "it has 2 shapes, none of them visible and of any size; skipped: 1 text"),
-    (f'{ROOT}<path d="M0 0L1e300 1"/></svg>'.encode(), "1 path with unusable numbers"),
-], ids=lambda value: value if isinstance(value, str) else "")
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (b"", "empty"),
+        (b" \n", "empty"),
+        (b"%PDF-1.4 nonsense", "this is a PDF, not an SVG"),
+        (b"\x00\x01\x02\xff", "not well-formed XML"),
+        (b'<?xml version="1.0" encoding="no-such"?><svg/>', "XML"),
+        (f"{ROOT}<path d='M1 1".encode(), "not well-formed XML"),
+        (f"{ROOT}<g>".encode(), "line 1"),
+        (b"<html><body/></html>", "outermost element is <html>"),
+        (b'<svg xmlns="urn:other"/>', "not an SVG"),
+        (b'<!DOCTYPE svg [<!ENTITY a "b">]>' + f"{ROOT}</svg>".encode(), "document type"),
+        (
+            b'<!DOCTYPE svg [<!ENTITY a SYSTEM "file:///etc/passwd">]>' + f"{ROOT}<text>&a;</text></svg>".encode(),
+            "document type",
+        ),
+        (b'<!DOCTYPE svg SYSTEM "file:///etc/passwd">' + f"{ROOT}</svg>".encode(), "document type"),
+        (f'{ROOT}<use id="u" href="#u"/></svg>'.encode(), "refers to itself"),
+        (f'{ROOT}<g id="a"><use href="#b"/></g><g id="b"><use href="#a"/></g></svg>'.encode(), "refers to itself"),
+        (f'{ROOT}<path id="g0" d="M0 0L1 1"/>{BILLION}</svg>'.encode(), "multiply"),
+        ((ROOT + "<g>" * 5000 + "</g>" * 5000 + "</svg>").encode(), "deep"),
+        (b'<svg xmlns="http://www.w3.org/2000/svg" width="0" height="5"><path d="M0 0L1 1"/></svg>', "width, height"),
+        (b"\x1f\x8b" + b"x" * 50, "gzip"),
+        (gzip.compress(b"<svg/>" * 100)[:-12], "gzip"),
+        (gzip.compress(b" " * (SIZE_LIMIT_BYTES + 5)), f"limit of {SIZE_LIMIT_BYTES} bytes"),
+        (b" " * (SIZE_LIMIT_BYTES + 5), f"limit of {SIZE_LIMIT_BYTES} bytes"),
+        (f"{ROOT}</svg>".encode(), "nothing to draw: it has no shapes"),
+        (
+            f'{ROOT}<path display="none" d="M0 0L1 1"/><circle r="-2"/><text>a</text></svg>'.encode(),
+            "it has 2 shapes, none of them visible and of any size; skipped: 1 text",
+        ),
+        (f'{ROOT}<path d="M0 0L1e300 1"/></svg>'.encode(), "1 path with unusable numbers"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
 def test_unusable_files_are_refused_in_one_line(tmp_path: Path, data: bytes, words: str) -> None:
     assert words in refusal(tmp_path, data)
 

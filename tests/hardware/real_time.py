@@ -3,7 +3,7 @@
 They are few, since most of what is tested is not time: there a bench or a controller in lock step stands for both. How
 often each of them had to be tried anew is what `pytest --reruns` says:
 
-    for k in $(seq 20); do pytest -n 2 -r R tests/hardware/native; done | grep -c ^RERUN
+    for k in $(seq 20); do pytest -n 2 -r R tests/hardware/drivers/native; done | grep -c ^RERUN
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ from itertools import product
 
 import numpy as np
 
-from hardware.calibration import pulse_calibration
-from hardware.tip import link_nodes_mm
+from hardware.compensation.servo_values import pulse_calibration
+from hardware.motion.tip import link_nodes_mm
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 
@@ -17,6 +17,8 @@ def rounding_mm(arm: Arm, positions: FloatArray, step_us: float) -> float:
     the side that is worst."""
     calibration = pulse_calibration(arm)
     pulses_us, tip_mm = calibration.to_servos(positions), link_nodes_mm(arm, positions)[:, -1, :2]
-    moved_mm = [link_nodes_mm(arm, calibration.to_joints(pulses_us + step_us / 2 * np.array(sides)))[:, -1, :2] - tip_mm
-                for sides in product((-1.0, 1.0), repeat=arm.n_joints)]
+    moved_mm = [
+        link_nodes_mm(arm, calibration.to_joints(pulses_us + step_us / 2 * np.array(sides)))[:, -1, :2] - tip_mm
+        for sides in product((-1.0, 1.0), repeat=arm.n_joints)
+    ]
     return float(np.linalg.norm(moved_mm, axis=-1).max())

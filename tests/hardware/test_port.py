@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from hardware import port as port_module
+from hardware.drivers.usb_ids import likely_controller
 from hardware.port import Line, PluggedIn, Port, plugged_in
-from hardware.usb_ids import likely_controller
 from planner.cli import main
 from planner.errors import HardwareError
 from tests.hardware.controllers.lines import Rfc2217, pty_line, tcp_line
@@ -105,7 +105,8 @@ def test_a_device_that_somebody_has_open_is_told(terminal: str) -> None:
 
 @pytest.mark.parametrize("devices", [(), ("/dev/ttyACM0", "/dev/ttyUSB1")])
 def test_a_device_that_is_not_there_is_told_with_those_that_are(
-        devices: tuple[str, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    devices: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(port_module, "plugged_in", lambda: [PluggedIn(device, "", None) for device in devices])
     told = "plugged in: /dev/ttyACM0, /dev/ttyUSB1" if devices else "nothing is plugged in"
     with pytest.raises(HardwareError, match=f"^/dev/ttyUSB77: there is no such port; {told}$"):
@@ -148,13 +149,21 @@ def test_a_host_where_nobody_listens_is_told() -> None:
 
 
 def test_plan_ports_lists_devices_and_what_they_are_likely_to_be(
-        monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(port_module, "plugged_in", lambda: [
-        PluggedIn("/dev/ttyACM0", "Pololu Micro Maestro", (0x1FFB, 0x0089)), PluggedIn("/dev/ttyS0", "", None)])
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(
+        port_module,
+        "plugged_in",
+        lambda: [
+            PluggedIn("/dev/ttyACM0", "Pololu Micro Maestro", (0x1FFB, 0x0089)),
+            PluggedIn("/dev/ttyS0", "", None),
+        ],
+    )
     assert main(["ports"]) == 0
     assert capsys.readouterr().out.splitlines() == [
         "/dev/ttyACM0  Pololu Micro Maestro  Pololu Maestro: --driver maestro on the first of its two ports",
-        "/dev/ttyS0"]
+        "/dev/ttyS0",
+    ]
     monkeypatch.setattr(port_module, "plugged_in", list)
     assert main(["ports"]) == 0
     assert capsys.readouterr().out == "nothing is plugged in\n"

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from planner.arms.arm import Arm, JointKind
-from planner.arms.kinematics import kinematics_of
 from planner.arrays import FloatArray
 from planner.comparison.worked_example import ERRATA, ITERATIONS, LAMBDA_SQUARED, TARGET_CM
 from planner.inverse_kinematics.dls import DOCUMENTED, FOR_DRAWING, DlsSettings, iterate, solve_sequence
-from tests.arms.chains import load_once, random_postures, reachable_postures, tips_by_product
+from planner.kinematics.chain import kinematics_of
+from tests.arms.chains import load_once, random_configurations, reachable_configurations, tips_by_product
 from tests.inverse_kinematics.worked_example import DAMPED_PSEUDOINVERSE, J_JT, JACOBIAN
 
 PRINTED = 0.5e-4 * (1 + 1e-6)
@@ -30,10 +30,16 @@ def computed(documented: Arm) -> list[dict[str, FloatArray]]:
     """The ten lines of the table, by column, in cm and degrees."""
     start = documented.from_file_units(ITERATIONS[0].angles_deg)
     return [
-        {"angles_deg": np.degrees(state.joints), "position_cm": state.tip_mm / 10, "error_cm": state.error_mm / 10,
-         "error_plane_cm": np.array([np.hypot(*state.error_mm[:2]) / 10]),
-         "error_height_cm": np.array([abs(state.error_mm[2]) / 10]), "step_deg": np.degrees(state.step)}
-        for state in islice(iterate(documented, start, TARGET_MM, LAMBDA_SQUARED), len(ITERATIONS))]
+        {
+            "angles_deg": np.degrees(state.joints),
+            "position_cm": state.tip_mm / 10,
+            "error_cm": state.error_mm / 10,
+            "error_plane_cm": np.array([np.hypot(*state.error_mm[:2]) / 10]),
+            "error_height_cm": np.array([abs(state.error_mm[2]) / 10]),
+            "step_deg": np.degrees(state.step),
+        }
+        for state in islice(iterate(documented, start, TARGET_MM, LAMBDA_SQUARED), len(ITERATIONS))
+    ]
 
 
 def jacobian_cm(arm: Arm) -> FloatArray:
@@ -43,7 +49,7 @@ def jacobian_cm(arm: Arm) -> FloatArray:
 
 def test_start_position(documented: Arm) -> None:
     start = documented.from_file_units(ITERATIONS[0].angles_deg)
-    tip_cm = kinematics_of(documented).tip_mm(kinematics_of(documented).free_of(start[None]))[0] / 10
+    tip_cm = kinematics_of(documented).tip_mm(kinematics_of(documented).independent_of(start[None]))[0] / 10
     np.testing.assert_allclose(tip_cm, [11.5286, 0.0, 3.5402], rtol=0, atol=PRINTED)
 
 
@@ -55,8 +61,9 @@ def test_first_jacobian_and_what_is_made_of_it(documented: Arm) -> None:
     np.testing.assert_allclose(inverse, DAMPED_PSEUDOINVERSE, rtol=0, atol=PRINTED)
 
 
-@pytest.mark.parametrize("column", ["angles_deg", "position_cm", "error_cm", "error_plane_cm", "error_height_cm",
-                                    "step_deg"])
+@pytest.mark.parametrize(
+    "column", ["angles_deg", "position_cm", "error_cm", "error_plane_cm", "error_height_cm", "step_deg"]
+)
 @pytest.mark.parametrize("iteration", range(len(ITERATIONS)))
 def test_iteration_table(computed: list[dict[str, FloatArray]], iteration: int, column: str) -> None:
     """To the printed decimals, but for the three errata: there the print is off and the corrected figure holds."""
@@ -78,7 +85,7 @@ def test_converged_at_iteration_nine_and_not_before(documented: Arm) -> None:
     start = documented.from_file_units(ITERATIONS[0].angles_deg)
     found = solve_sequence(documented, TARGET_MM[None], start, DOCUMENTED)
     assert found.converged[0] and found.iterations[0] == 9
-    np.testing.assert_allclose(np.degrees(found.postures[0]), ITERATIONS[9].angles_deg[:4], rtol=0, atol=PRINTED)
+    np.testing.assert_allclose(np.degrees(found.configurations[0]), ITERATIONS[9].angles_deg[:4], rtol=0, atol=PRINTED)
     assert found.error_mm[0] == pytest.approx(10 * np.linalg.norm(ITERATIONS[9].error_cm), abs=2e-3)
     stopped = solve_sequence(documented, TARGET_MM[None], start, DlsSettings(most_iterations=8))
     assert not stopped.converged[0] and stopped.iterations[0] == 8
@@ -91,7 +98,7 @@ def test_only_lengths_in_centimetres_give_the_documented_step(documented: Arm) -
 
 
 def test_a_step_is_the_damped_least_squares_solution_and_keeps_the_coupling(arm: Arm) -> None:
-    joints = arm.complete(random_postures(arm, 1, 1))[0]
+    joints = arm.complete(random_configurations(arm, 1, 1))[0]
     first, second = islice(iterate(arm, joints, np.array([80.0, 20.0, 0.0]), 7.0), 2)
     J = kinematics_of(arm).jacobian(joints[None])[0] / np.array([[10.0], [10.0], [10.0], [1.0], [1.0], [1.0]])
     error = np.concatenate((first.error_mm / 10, np.zeros(3)))
@@ -105,10 +112,10 @@ def test_a_step_is_the_damped_least_squares_solution_and_keeps_the_coupling(arm:
 
 @pytest.mark.parametrize("settings", [DOCUMENTED, FOR_DRAWING])
 def test_tolerances_along_and_across_the_paper_are_met(arm: Arm, settings: DlsSettings) -> None:
-    postures = reachable_postures(arm, 3, 6)
-    targets = kinematics_of(arm).tip_mm(postures)
-    found = solve_sequence(arm, targets, arm.complete(postures[0] + 0.05), settings)
-    miss = tips_by_product(arm, arm.complete(found.postures)) - targets
+    configurations = reachable_configurations(arm, 3, 6)
+    targets = kinematics_of(arm).tip_mm(configurations)
+    found = solve_sequence(arm, targets, arm.complete(configurations[0] + 0.05), settings)
+    miss = tips_by_product(arm, arm.complete(found.configurations)) - targets
     np.testing.assert_allclose(found.error_mm, np.linalg.norm(miss, axis=1), atol=1e-9)
     met = (np.hypot(*miss[:, :2].T) < settings.tolerance_xy_mm) & (np.abs(miss[:, 2]) < settings.tolerance_z_mm)
     np.testing.assert_array_equal(found.converged, met)
@@ -122,20 +129,20 @@ def test_a_tighter_tolerance_takes_more_iterations_and_ends_nearer(documented: A
     assert fine.error_mm[0] < 0.02 < rough.error_mm[0]
 
 
-def test_each_target_starts_from_the_posture_before(documented: Arm) -> None:
+def test_each_target_starts_from_the_configuration_before(documented: Arm) -> None:
     start = documented.from_file_units(ITERATIONS[0].angles_deg)
     found = solve_sequence(documented, np.tile(TARGET_MM, (3, 1)), start, FOR_DRAWING)
     assert found.iterations[0] > 0 and (found.iterations[1:] == 0).all()
-    np.testing.assert_array_equal(found.postures[2], found.postures[0])
+    np.testing.assert_array_equal(found.configurations[2], found.configurations[0])
 
 
 def test_out_of_reach_is_a_value(arm: Arm) -> None:
-    middle = arm.complete(((arm.minimum + arm.maximum) / 2)[list(arm.free_joints)])
+    middle = arm.complete(((arm.minimum + arm.maximum) / 2)[list(arm.independent_joints)])
     found = solve_sequence(arm, np.array([[300.0, 0.0, 0.0]]), middle, DlsSettings(most_iterations=300))
     assert not found.converged[0] and found.iterations[0] == 300
     assert found.error_mm[0] > 140.0
     nothing = solve_sequence(arm, np.empty((0, 3)), middle, DOCUMENTED)
-    assert nothing.postures.shape == (0, 4) and nothing.converged.shape == (0,)
+    assert nothing.configurations.shape == (0, 4) and nothing.converged.shape == (0,)
 
 
 def test_a_joint_that_slides_counts_in_centimetres_as_all_lengths_do() -> None:
@@ -144,7 +151,7 @@ def test_a_joint_that_slides_counts_in_centimetres_as_all_lengths_do() -> None:
     found = next(iterate(arm, joints, np.array([150.0, 40.0, 0.0]), 7.0))
     slides = np.array([10.0 if joint.kind is JointKind.PRISMATIC else 1.0 for joint in arm.joints])
     J = kinematics_of(arm).jacobian(joints[None])[0] / np.array([[10.0], [10.0], [10.0], [0.1], [0.1], [0.1]]) * slides
-    axis = kinematics_of(arm).tool_axis(kinematics_of(arm).free_of(joints[None]))[0]
+    axis = kinematics_of(arm).tool_axis(kinematics_of(arm).independent_of(joints[None]))[0]
     error = np.concatenate((found.error_mm / 10, 10.0 * np.cross(axis, [0.0, 0.0, -1.0])))
     step = found.step / slides
     np.testing.assert_allclose(J.T @ J @ step + 7.0 * step, J.T @ error, atol=1e-9)

@@ -10,7 +10,7 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import JointPaths, interpolate
 from planner.ragged import starts_of
-from tests.arms.chains import random_postures
+from tests.arms.chains import random_configurations
 
 CELLS = st.lists(st.integers(4, 12), min_size=1, max_size=4).map(np.array)
 ENDS = np.array([0.0, 1.0])
@@ -60,7 +60,7 @@ def test_derivatives_are_difference_quotients() -> None:
 
 def test_couplings_hold_between_knots(arm: Arm) -> None:
     n_cells = np.array([5, 9])
-    paths = interpolate(n_cells, arm.complete(random_postures(arm, 1, 16)))
+    paths = interpolate(n_cells, arm.complete(random_configurations(arm, 1, 16)))
     fractions = np.linspace(0, 1, 21)
     np.testing.assert_allclose(paths.positions(fractions)[..., 1:].sum(axis=-1), -np.pi / 2, atol=1e-11)
     np.testing.assert_allclose(paths.positions(fractions, 1)[..., 1:].sum(axis=-1), 0, atol=1e-10)
@@ -70,7 +70,7 @@ def test_paths_laid_end_to_end_do_not_feel_each_other() -> None:
     n_cells = np.array([4, 7, 5])
     knots = knots_of(n_cells, 2)
     together = interpolate(n_cells, knots)
-    alone = [interpolate(n_cells[k:k + 1], own).controls for k, own in enumerate(by_path(n_cells, knots))]
+    alone = [interpolate(n_cells[k : k + 1], own).controls for k, own in enumerate(by_path(n_cells, knots))]
     np.testing.assert_allclose(together.controls, np.concatenate(alone), atol=1e-10)
 
 

@@ -66,8 +66,9 @@ def test_a_stroke_within_reach_is_left_as_it_is() -> None:
 def test_a_stroke_across_the_hole_becomes_two() -> None:
     kept, lost_mm, lost_whole = clip_strokes([np.array([[-60.0, 0.0], [60.0, 0.0]])], in_ring, OUTER_MM)
     assert lost_whole == 0 and [len(run) > 1 for run in kept] == [True, True]
-    np.testing.assert_allclose(np.abs([kept[0][[0, -1], 0], kept[1][::-1][[0, -1], 0]]),
-                               [[60.0, 33.0]] * 2, atol=STEP_MM)
+    np.testing.assert_allclose(
+        np.abs([kept[0][[0, -1], 0], kept[1][::-1][[0, -1], 0]]), [[60.0, 33.0]] * 2, atol=STEP_MM
+    )
     assert abs(lost_mm - 66.0) < 2 * STEP_MM
 
 

@@ -8,18 +8,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planner.affine import compose, rotation
-from planner.arms.canvas import Canvas
 from planner.arrays import FloatArray
 from planner.errors import DoesNotFit, UsageError
 from planner.placement.fit import fit_to_canvas
 from planner.settings import CanvasKind
+from planner.workspace.canvas import Canvas
 
 CANVAS = Canvas(CanvasKind.USABLE, 40.0, 120.0, -75.0, 75.0)
 WIDTH_MM, HEIGHT_MM = 150.0, 80.0
 
 coordinate = st.floats(-500, 500)
 corners = st.tuples(coordinate, coordinate, st.floats(0.01, 800), st.floats(0.01, 800)).map(
-    lambda values: (np.array(values[:2]), np.array(values[:2]) + np.array(values[2:])))
+    lambda values: (np.array(values[:2]), np.array(values[:2]) + np.array(values[2:]))
+)
 
 
 def applied(affine: FloatArray, points: FloatArray) -> FloatArray:
@@ -30,7 +31,8 @@ def applied(affine: FloatArray, points: FloatArray) -> FloatArray:
 @settings(deadline=None, max_examples=50)
 @given(corners, st.floats(0.0, 39.0))
 def test_a_fitted_drawing_fills_the_canvas_within_its_margin(
-        box: tuple[FloatArray, FloatArray], margin_mm: float) -> None:
+    box: tuple[FloatArray, FloatArray], margin_mm: float
+) -> None:
     low, high = box
     affine = fit_to_canvas(low, high, CANVAS, margin_mm=margin_mm, scale=True)
     (x0, y0), (x1, y1) = np.sort(applied(affine, np.stack((low, high))), axis=0)
@@ -42,7 +44,8 @@ def test_a_fitted_drawing_fills_the_canvas_within_its_margin(
 @settings(deadline=None, max_examples=50)
 @given(corners, st.floats(0.0, 39.0), st.booleans())
 def test_scale_is_uniform_and_the_page_lies_as_seen_from_behind_the_arm(
-        box: tuple[FloatArray, FloatArray], margin_mm: float, scale: bool) -> None:
+    box: tuple[FloatArray, FloatArray], margin_mm: float, scale: bool
+) -> None:
     low, high = box
     if not scale:
         high = low + np.minimum(high - low, np.array([WIDTH_MM, HEIGHT_MM]) - 2 * margin_mm)
@@ -65,12 +68,13 @@ def test_a_turned_drawing_fits_and_keeps_its_shape(angle_deg: float, points: lis
     placed = applied(affine, shape)
     assert (placed >= np.array([45.0, -70.0]) - 1e-8).all() and (placed <= np.array([115.0, 70.0]) + 1e-8).all()
     factor = np.sqrt(abs(np.linalg.det(affine[:, :2])))
-    np.testing.assert_allclose(affine[:, :2].T @ affine[:, :2], factor ** 2 * np.eye(2), atol=1e-9 * factor ** 2)
+    np.testing.assert_allclose(affine[:, :2].T @ affine[:, :2], factor**2 * np.eye(2), atol=1e-9 * factor**2)
     assert np.linalg.det(affine[:, :2]) < 0  # the page's y points down: its mirror image lies before the arm
 
 
-@pytest.mark.parametrize(("angle_deg", "moved"), [
-    (0, (1, 0)), (90, (0, 1)), (180, (-1, 0)), (-90, (0, -1)), (450, (0, 1))])
+@pytest.mark.parametrize(
+    ("angle_deg", "moved"), [(0, (1, 0)), (90, (0, 1)), (180, (-1, 0)), (-90, (0, -1)), (450, (0, 1))]
+)
 def test_right_angles_are_exact_and_clockwise_on_the_page(angle_deg: float, moved: tuple[float, float]) -> None:
     np.testing.assert_array_equal(applied(rotation(angle_deg), np.array([1.0, 0.0])), moved)
 

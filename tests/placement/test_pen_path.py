@@ -23,7 +23,7 @@ def curve_of(paths: PenPaths, index: int) -> BSpline[np.float64]:
     first = int((paths.n_cells[:index] + DEGREE).sum())
     n_cells = int(paths.n_cells[index])
     knots = np.arange(-DEGREE, n_cells + DEGREE + 1, dtype=np.float64)
-    return BSpline(knots, paths.controls_mm[first:first + n_cells + DEGREE], DEGREE, extrapolate=False)
+    return BSpline(knots, paths.controls_mm[first : first + n_cells + DEGREE], DEGREE, extrapolate=False)
 
 
 def traced(paths: PenPaths, index: int, per_cell: int = 24) -> FloatArray:
@@ -142,7 +142,7 @@ def test_derivatives_are_continuous_to_the_fourth_and_are_those_of_the_spline() 
     for index, n_cells in enumerate(paths.n_cells.tolist()):
         curve = curve_of(paths, index)
         for order in range(DEGREE):
-            ends = paths.points(np.array([0.0, 1.0]), order)[begin:begin + n_cells]
+            ends = paths.points(np.array([0.0, 1.0]), order)[begin : begin + n_cells]
             np.testing.assert_allclose(ends[:-1, 1], ends[1:, 0], atol=1e-11)
             np.testing.assert_allclose(ends[1:, 0], curve.derivative(order)(np.arange(1, n_cells)), atol=1e-10)
         begin += n_cells
@@ -161,8 +161,14 @@ def test_a_stroke_does_not_depend_on_the_others(lines: Sequence[FloatArray], dat
 def test_cells_grow_with_the_path_and_not_with_the_points_on_it() -> None:
     """Points added on straight lines change nothing, and a curve needs no more cells for denser chords."""
     plain = smooth_paths([SHAPES["square"]], TOLERANCE_MM)
-    filled = smooth_paths([dense(SHAPES["square"], 0.05)[
-        np.concatenate(([True], np.hypot(*np.diff(dense(SHAPES["square"], 0.05), axis=0).T) > 1e-9))]], TOLERANCE_MM)
+    filled = smooth_paths(
+        [
+            dense(SHAPES["square"], 0.05)[
+                np.concatenate(([True], np.hypot(*np.diff(dense(SHAPES["square"], 0.05), axis=0).T) > 1e-9))
+            ]
+        ],
+        TOLERANCE_MM,
+    )
     assert filled.n_cells[0] <= 1.05 * plain.n_cells[0]
     coarse, fine = (smooth_paths([SHAPES[name]], TOLERANCE_MM) for name in ("coarse circle", "dense circle"))
     assert fine.n_cells[0] <= 1.1 * coarse.n_cells[0]

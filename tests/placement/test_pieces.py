@@ -33,8 +33,7 @@ def test_pieces_are_the_stroke_and_of_bounded_size(seed: int, count: int, step_m
     assert len(alone.points_mm) == len(other.points_mm) == 1 and alone.work == 0.0
     joined = np.concatenate([made[0].points_mm, *(piece.points_mm[1:] for piece in made[1:])])
     assert np.array_equal(joined, stroke)
-    assert all(np.array_equal(one.points_mm[-1], next_one.points_mm[0])
-               for one, next_one in pairwise(made))
+    assert all(np.array_equal(one.points_mm[-1], next_one.points_mm[0]) for one, next_one in pairwise(made))
     assert all(len(piece.points_mm) > 1 for piece in made)
     (undivided,) = next(in_pieces([stroke], TOLERANCE_MM, whole=True))
     longest_step = float(np.diff(expected_cells([stroke], TOLERANCE_MM)[0]).max()) + 1.0
@@ -52,13 +51,13 @@ def test_strokes_are_looked_at_together_or_part_by_part_to_the_same_effect(monke
 
 
 def test_the_pen_rests_at_the_sharpest_vertex_near_the_middle(monkeypatch: pytest.MonkeyPatch) -> None:
-    gentle = np.column_stack((np.linspace(0, 100, 101), 0.02 * np.cos(np.pi * np.arange(101))))
-    corner = np.column_stack((np.full(100, 100.0), np.linspace(1, 100, 100) + gentle[-1, 1]))
-    stroke = np.concatenate((gentle, corner))
+    slow = np.column_stack((np.linspace(0, 100, 101), 0.02 * np.cos(np.pi * np.arange(101))))
+    corner = np.column_stack((np.full(100, 100.0), np.linspace(1, 100, 100) + slow[-1, 1]))
+    stroke = np.concatenate((slow, corner))
     (undivided,) = next(in_pieces([stroke], TOLERANCE_MM, whole=True))
     monkeypatch.setattr(pieces, "_WORK", undivided.work / 2)
     ((one, _),) = in_pieces([stroke], TOLERANCE_MM)
-    assert np.array_equal(one.points_mm[-1], gentle[-1])
+    assert np.array_equal(one.points_mm[-1], slow[-1])
     assert len(next(in_pieces([stroke], TOLERANCE_MM, whole=True))) == 1
     assert list(in_pieces([], TOLERANCE_MM)) == []
 
@@ -67,7 +66,8 @@ def test_the_pen_rests_at_the_sharpest_vertex_near_the_middle(monkeypatch: pytes
 def test_cells_are_expected_before_the_path_is_made(seed: int, count: int, step_mm: float) -> None:
     """Lone corners tell most of them; ramps at both ends and bends add to that, and nothing takes away."""
     strokes = [wandering(seed, count, step_mm), wandering(seed + 1, count, step_mm)]
-    for expected, made in zip(expected_cells(strokes, TOLERANCE_MM),
-                              smooth_paths(strokes, TOLERANCE_MM).n_cells.tolist(), strict=True):
+    for expected, made in zip(
+        expected_cells(strokes, TOLERANCE_MM), smooth_paths(strokes, TOLERANCE_MM).n_cells.tolist(), strict=True
+    ):
         assert expected[0] == 0.0 and (np.diff(expected) > 0.0).all()
         assert 0.3 * (made - 20) <= expected[-1] <= made

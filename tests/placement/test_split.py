@@ -19,9 +19,11 @@ strokes_made = st.lists(place, min_size=2, max_size=5, unique=True).map(np.array
 
 def between(low: float, high: float) -> Callable[[FloatArray], BoolArray]:
     """A sheet that holds a strip across x."""
+
     def held(points: FloatArray) -> BoolArray:
         inside: BoolArray = (points[:, 0] >= low) & (points[:, 0] <= high)
         return inside
+
     return held
 
 
@@ -46,8 +48,10 @@ def fewest(points: FloatArray) -> int:
 
 
 def dense(stroke: FloatArray) -> FloatArray:
-    steps = [np.linspace(one, other, max(int(np.ceil(np.hypot(*(other - one)) / STEP_MM)), 1) + 1)[:-1]
-             for one, other in pairwise(stroke)]
+    steps = [
+        np.linspace(one, other, max(int(np.ceil(np.hypot(*(other - one)) / STEP_MM)), 1) + 1)[:-1]
+        for one, other in pairwise(stroke)
+    ]
     return np.concatenate([*steps, stroke[-1:]])
 
 

@@ -49,8 +49,11 @@ def test_the_colour_of_every_step_is_its_finite_difference(make_trajectory: Make
     tip_mm = tip_path(trajectory)
     figure = plot_speed(trajectory, tip_mm)
     steps = coloured_steps(figure)
-    drawn = [k for k in range(trajectory.n_samples - 1)
-             if trajectory.stroke[k] >= 0 and trajectory.stroke[k] == trajectory.stroke[k + 1]]
+    drawn = [
+        k
+        for k in range(trajectory.n_samples - 1)
+        if trajectory.stroke[k] >= 0 and trajectory.stroke[k] == trajectory.stroke[k + 1]
+    ]
     assert len(steps) == len(drawn)
     speeds = [float(np.hypot(*(tip_mm[k + 1, :2] - tip_mm[k, :2]))) * trajectory.rate_hz for k in drawn]
     top = max(speeds)
@@ -65,7 +68,8 @@ def test_the_colour_of_every_step_is_its_finite_difference(make_trajectory: Make
 
 
 def test_the_error_is_shown_over_the_way_with_the_tolerance_and_its_worst_place(
-        make_trajectory: MakeTrajectory) -> None:
+    make_trajectory: MakeTrajectory,
+) -> None:
     trajectory = make_trajectory()
     tip_mm = tip_path(trajectory)
     error_mm = np.abs(np.sin(np.arange(trajectory.n_samples))) * 0.04
@@ -77,8 +81,9 @@ def test_the_error_is_shown_over_the_way_with_the_tolerance_and_its_worst_place(
     (curve,) = [line for line in below.lines if line.get_label() == "distance from the drawing"]
     np.testing.assert_array_equal(curve.get_ydata(), error_mm[trajectory.pen])
     way_mm = np.asarray(curve.get_xdata())
-    drawn_mm = sum(float(np.linalg.norm(np.diff(tip_mm[trajectory.stroke == k, :2], axis=0), axis=1).sum())
-                   for k in (0, 2))
+    drawn_mm = sum(
+        float(np.linalg.norm(np.diff(tip_mm[trajectory.stroke == k, :2], axis=0), axis=1).sum()) for k in (0, 2)
+    )
     assert (way_mm[0], way_mm[-1]) == pytest.approx((0.0, drawn_mm))
     assert np.all(np.diff(way_mm) >= 0)
     (tolerance,) = [line for line in below.lines if line.get_label() == "tolerance"]

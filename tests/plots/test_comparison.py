@@ -24,9 +24,11 @@ STROKES = [np.array([[120.0, 20.0], [120.0, 24.0]]), np.array([[110.0, -10.0], [
 @lru_cache
 def compared(name: str, kind: str) -> Comparison:
     arm = load_once(name)
-    targets: Targets = {"single": lambda: single_targets(np.array([[53.0, 47.8, 0.0]])),
-                        "random": lambda: random_targets(arm, 12, 1),
-                        "drawing": lambda: targets_along(STROKES)}[kind]()
+    targets: Targets = {
+        "single": lambda: single_targets(np.array([[53.0, 47.8, 0.0]])),
+        "random": lambda: random_targets(arm, 12, 1),
+        "drawing": lambda: targets_along(STROKES),
+    }[kind]()
     return compare(arm, targets, default_start(arm, targets.kind), PlanSettings(arm=name), lambda *_: None)
 
 
@@ -42,8 +44,7 @@ def test_the_convergence_is_shown_beside_the_printed_figures() -> None:
     errors = np.array([state.error_mm for state in comparison.convergences[0].steps])
     np.testing.assert_allclose(lines(convergence, "along the paper")[:, 1], np.hypot(*errors[:, :2].T))
     np.testing.assert_allclose(lines(convergence, "across it")[:, 1], np.abs(errors[:, 2]))
-    rings = [np.asarray(line.get_xydata()) for line in convergence.lines
-             if "printed" in str(line.get_label())]
+    rings = [np.asarray(line.get_xydata()) for line in convergence.lines if "printed" in str(line.get_label())]
     for index, (ring, row) in enumerate(zip(rings, ITERATIONS, strict=True)):
         np.testing.assert_allclose(ring, [[index, 10 * row.error_plane_cm], [index, 10 * row.error_height_cm]])
     links = [np.asarray(line.get_xydata()) for line in above.lines if line.get_label() in ("_links", "start")]
@@ -66,7 +67,7 @@ def test_along_a_drawing_every_joint_is_shown_with_its_limits_and_strokes_apart(
     comparison = compared("scara", "drawing")
     figure = plot_comparison(comparison)
     able = shown(comparison)
-    maps, panels = figure.axes[:len(able)], figure.axes[len(able):]
+    maps, panels = figure.axes[: len(able)], figure.axes[len(able) :]
     assert [axes.get_ylabel() for axes in panels] == ["tip's error (mm)", "q1 (deg)", "q2 (deg)", "q3 (mm)", "q4 (deg)"]
     for result, measured in able:
         for index, axes in enumerate(panels[1:]):
@@ -91,8 +92,9 @@ def test_limits_are_drawn_where_they_are_and_targets_outside_are_marked() -> Non
     panel = figure.axes[len(able) + 1]
     assert [line for line in panel.lines if np.allclose(line.get_ydata(), limit)]
     (outside,) = [line for line in figure.axes[len(able) - 1].lines if line.get_label() == "outside"]
-    np.testing.assert_allclose(np.sort(np.asarray(outside.get_xdata())),
-                               np.sort(narrow.targets.tips_mm[q1 > narrow.arm.maximum[0], 1]))
+    np.testing.assert_allclose(
+        np.sort(np.asarray(outside.get_xdata())), np.sort(narrow.targets.tips_mm[q1 > narrow.arm.maximum[0], 1])
+    )
     assert len(outside.get_xdata()) == 4
 
 

@@ -99,7 +99,11 @@ def test_canvas_ring_and_base_are_there_and_in_view(make_trajectory: MakeTraject
     ring = shapes["reach of the pen"].get_path()
     assert ring.get_extents().extents == pytest.approx([-149, 0, 149, 149], abs=0.1)
     assert [bool(ring.contains_point(point)) for point in ((0, 32), (0, 34), (100, 100), (110, 110))] == [
-        False, True, True, False]
+        False,
+        True,
+        True,
+        False,
+    ]
     assert axes.get_xlim()[0] > 149 > -149 > axes.get_xlim()[1]
     assert axes.get_ylim()[0] < 0 < 149 < axes.get_ylim()[1]
 

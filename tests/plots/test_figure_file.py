@@ -23,7 +23,8 @@ def figure(make_trajectory: Callable[..., Trajectory]) -> Figure:
 
 @pytest.mark.parametrize(("suffix", "begins"), [(".png", b"\x89PNG\r\n"), (".svg", b"<?xml"), (".PDF", b"%PDF-")])
 def test_the_suffix_decides_and_equal_figures_make_equal_files(
-        figure: Figure, tmp_path: Path, suffix: str, begins: bytes) -> None:
+    figure: Figure, tmp_path: Path, suffix: str, begins: bytes
+) -> None:
     first, second = tmp_path / f"first{suffix}", tmp_path / f"second{suffix}"
     save_figure(figure, first)
     save_figure(figure, second)

@@ -48,8 +48,9 @@ def test_the_last_node_is_the_tip_and_links_keep_their_lengths(name: str) -> Non
     low, high = arm.to_file_units(arm.minimum), arm.to_file_units(arm.maximum)
     positions = np.random.default_rng(1).uniform(low, high, (50, arm.n_joints))
     up = np.zeros(50, dtype=bool)
-    trajectory = Trajectory(name, "", "path", 100.0, arm.column_names, positions, up, np.full(50, TRAVELLING),
-                            (1, 0, 0, 1, 0, 0))
+    trajectory = Trajectory(
+        name, "", "path", 100.0, arm.column_names, positions, up, np.full(50, TRAVELLING), (1, 0, 0, 1, 0, 0)
+    )
     tip_mm = chain_poses(arm, arm.from_file_units(positions)).tip_mm.T
     nodes_mm = motion_of(trajectory, arm, tip_mm).nodes_mm(trajectory.times_s)
     np.testing.assert_allclose(nodes_mm[:, -1], tip_mm, atol=1e-9)
@@ -62,7 +63,8 @@ def test_the_last_node_is_the_tip_and_links_keep_their_lengths(name: str) -> Non
 
 @given(speed=st.floats(0.1, 50), fps=st.floats(1, 50), begin_s=st.floats(0, 2.5))
 def test_frames_are_even_and_end_with_the_part(
-        make_motion: Callable[..., Motion], speed: float, fps: float, begin_s: float) -> None:
+    make_motion: Callable[..., Motion], speed: float, fps: float, begin_s: float
+) -> None:
     times_s = make_motion(speed_factor=speed, fps=fps, from_s=begin_s).times_s
     assert (times_s[0], times_s[-1]) == (begin_s, 3.0)
     steps = np.diff(times_s)
@@ -70,8 +72,7 @@ def test_frames_are_even_and_end_with_the_part(
     assert np.all((steps > 0) & (steps <= speed / fps * (1 + 1e-9)))
 
 
-def test_a_long_film_is_sped_up_unless_told_otherwise(
-        arm: Arm, make_trajectory: Callable[..., Trajectory]) -> None:
+def test_a_long_film_is_sped_up_unless_told_otherwise(arm: Arm, make_trajectory: Callable[..., Trajectory]) -> None:
     long = make_trajectory(n_samples=20_001)
     tip_mm = np.zeros((20_001, 3))
     assert motion_of(long, arm, tip_mm).speed_factor == pytest.approx(10)
@@ -87,8 +88,10 @@ def test_pen_lines_keep_every_stroke_and_tap(make_motion: Callable[..., Motion])
     assert set(trajectory.stroke[samples]) == {0, 1, 2}
     np.testing.assert_array_equal(samples[begins == 1], [np.flatnonzero(trajectory.stroke == k)[0] for k in range(3)])
     for stroke in (0, 2):
-        kept, whole = (tip_mm[chosen, :2] for chosen in (
-            samples[trajectory.stroke[samples] == stroke], trajectory.stroke == stroke))
+        kept, whole = (
+            tip_mm[chosen, :2]
+            for chosen in (samples[trajectory.stroke[samples] == stroke], trajectory.stroke == stroke)
+        )
         np.testing.assert_array_equal(kept[[0, -1]], whole[[0, -1]])
         gaps = np.linalg.norm(whole[:, np.newaxis] - kept, axis=2).min(axis=1)
         assert gaps.max() < 0.05
@@ -147,7 +150,8 @@ def test_without_ffmpeg_the_extra_is_named(monkeypatch: pytest.MonkeyPatch, tmp_
 
 
 def test_a_failing_encoder_leaves_nothing_and_says_why(
-        make_motion: Callable[..., Motion], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    make_motion: Callable[..., Motion], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     encoder = tmp_path / "bin" / "ffmpeg"
     encoder.parent.mkdir()
     encoder.write_text("#!/bin/sh\necho no such codec >&2\nexit 1\n")
@@ -181,8 +185,7 @@ class _Page(HTMLParser):
 
 
 @pytest.mark.parametrize("theme", list(Theme))
-def test_a_page_needs_nothing_but_itself(
-        make_motion: Callable[..., Motion], tmp_path: Path, theme: Theme) -> None:
+def test_a_page_needs_nothing_but_itself(make_motion: Callable[..., Motion], tmp_path: Path, theme: Theme) -> None:
     name = "</script><b>$FILM & co"
     target = tmp_path / "film.html"
     motion = make_motion(drawing=name)

@@ -49,17 +49,21 @@ def test_letters_and_lines_stand_out_from_their_ground(colours: Colours) -> None
 
 @pytest.mark.parametrize("look", LOOKS, ids=["paper", "screen"])
 def test_headings_legends_and_panels_do_not_overlap(
-        look: Look, arm: Arm, make_trajectory: Callable[..., Trajectory]) -> None:
+    look: Look, arm: Arm, make_trajectory: Callable[..., Trajectory]
+) -> None:
     trajectory = make_trajectory(n_samples=101, drawing="W" * 300 + ".svg")
     s = np.linspace(0, 1, 101)
     tip_mm = np.column_stack((80 + 30 * s * np.cos(9 * s), 30 * s * np.sin(9 * s), 5.0 * ~trajectory.pen))
-    for figure in (plot_profiles(trajectory, arm, look),
-                   plot_drawing(trajectory, tip_mm, None, np.array([[40, -60], [40, 60], [120, 60], [120, -60]]),
-                                (33.0, 149.0), look),
-                   plot_speed(trajectory, tip_mm, None, (33.0, 149.0), look),
-                   plot_error(trajectory, tip_mm, s, 0.05, None, None, look),
-                   plot_phase_plane(trajectory, arm, tip_mm, None, look),
-                   plot_timeline(trajectory, tip_mm, 1.0, look)):
+    for figure in (
+        plot_profiles(trajectory, arm, look),
+        plot_drawing(
+            trajectory, tip_mm, None, np.array([[40, -60], [40, 60], [120, 60], [120, -60]]), (33.0, 149.0), look
+        ),
+        plot_speed(trajectory, tip_mm, None, (33.0, 149.0), look),
+        plot_error(trajectory, tip_mm, s, 0.05, None, None, look),
+        plot_phase_plane(trajectory, arm, tip_mm, None, look),
+        plot_timeline(trajectory, tip_mm, 1.0, look),
+    ):
         assert figure.get_size_inches()[0] == look.width_in
         assert to_rgb(figure.get_facecolor()) == to_rgb(look.colours.surface)
         _keeps_apart(figure)
@@ -80,7 +84,7 @@ def _keeps_apart(figure: Figure) -> None:
     for panel in panels:
         assert panel.y1 <= above[-1].y0
     for first, panel in enumerate(panels):
-        for other in panels[first + 1:]:
+        for other in panels[first + 1 :]:
             # tick labels of neighbours may come close, but not by more than the margin of a letter
             overlap = Bbox.intersection(panel, other)
             assert overlap is None or min(overlap.width, overlap.height) < 4

@@ -29,11 +29,11 @@ def smooth_path(arm: Arm, way_mm: FloatArray) -> tuple[FloatArray, FloatArray, F
     unit = np.array([joint.per_file_unit for joint in arm.joints])
     swing, waves = 12.0 * unit, 0.05 + 0.03 * np.arange(arm.n_joints)
     phase = waves * way_mm[:, np.newaxis] + np.arange(arm.n_joints)
-    return swing * np.sin(phase), swing * waves * np.cos(phase), -swing * waves ** 2 * np.sin(phase)
+    return swing * np.sin(phase), swing * waves * np.cos(phase), -swing * waves**2 * np.sin(phase)
 
 
 def test_both_curves_are_what_a_search_finds() -> None:
-    """The velocity limit by bisection, the acceleration limit by a linear programme in (a, v^2) at each place."""
+    """The velocity limit by bisection, the acceleration limit by a linear program in (a, v^2) at each place."""
     at_mm = np.concatenate(([0.0], np.cumsum(np.full(400, 0.1))))
     joints, _, _ = smooth_path(SCARA, at_mm)
     speeds = path_speeds(SCARA, joints, np.column_stack((at_mm, np.zeros_like(at_mm))), RATE_HZ)
@@ -51,12 +51,13 @@ def test_both_curves_are_what_a_search_finds() -> None:
     _, slope, bend = smooth_path(SCARA, speeds.acceleration_way_mm)
     for k in range(0, len(speeds.acceleration_way_mm), 37):
         rows = np.column_stack((slope[k], bend[k])) / SCARA.max_acceleration[:, np.newaxis]
-        best = linprog([0, -1], A_ub=np.vstack((rows, -rows)), b_ub=np.ones(2 * SCARA.n_joints),
-                       bounds=[(None, None), (0, None)])
+        best = linprog(
+            [0, -1], A_ub=np.vstack((rows, -rows)), b_ub=np.ones(2 * SCARA.n_joints), bounds=[(None, None), (0, None)]
+        )
         assert speeds.acceleration_limit_mm_s[k] == pytest.approx(np.sqrt(best.x[1]), rel=2e-3)
 
 
-@given(st.integers(0, 2 ** 32 - 1))
+@given(st.integers(0, 2**32 - 1))
 def test_a_motion_that_keeps_the_velocities_stays_under_the_curve(seed: int) -> None:
     random = np.random.default_rng(seed)
     share = random.uniform(-1, 1, (60, SCARA.n_joints)) * random.choice([0.0, 1e-5, 1.0], (60, 1))
@@ -80,20 +81,24 @@ def test_the_picture_shows_the_stroke_that_is_asked_for(arm: Arm, make_trajector
         speeds = path_speeds(arm, arm.from_file_units(trajectory.positions[samples]), tip_mm[samples], 100.0)
         lines = {str(line.get_label()): np.column_stack((line.get_xdata(), line.get_ydata())) for line in axes.lines}
         np.testing.assert_array_equal(lines["speed of the pen"], np.column_stack((speeds.way_mm, speeds.speed_mm_s)))
-        np.testing.assert_array_equal(lines["velocity limit curve"],
-                                      np.column_stack((speeds.way_mm, speeds.velocity_limit_mm_s)))
+        np.testing.assert_array_equal(
+            lines["velocity limit curve"], np.column_stack((speeds.way_mm, speeds.velocity_limit_mm_s))
+        )
         np.testing.assert_array_equal(
             lines["acceleration limit curve"],
-            np.column_stack((speeds.acceleration_way_mm, speeds.acceleration_limit_mm_s)))
+            np.column_stack((speeds.acceleration_way_mm, speeds.acceleration_limit_mm_s)),
+        )
         assert axes.get_xlabel().endswith("(mm)")
         assert axes.get_ylabel().endswith("(mm/s)")
         assert axes.get_ylim()[1] > speeds.speed_mm_s.max()
 
 
-@pytest.mark.parametrize(("stroke", "message"), [(3, "no stroke 3: the trajectory has 3, 0 to 2"),
-                                                 (1, "stroke 1 is a tap")])
+@pytest.mark.parametrize(
+    ("stroke", "message"), [(3, "no stroke 3: the trajectory has 3, 0 to 2"), (1, "stroke 1 is a tap")]
+)
 def test_a_stroke_that_has_no_speed_is_refused(
-        arm: Arm, make_trajectory: MakeTrajectory, stroke: int, message: str) -> None:
+    arm: Arm, make_trajectory: MakeTrajectory, stroke: int, message: str
+) -> None:
     trajectory = make_trajectory()
     with pytest.raises(UsageError, match=message):
         plot_phase_plane(trajectory, arm, tip_of(arm, trajectory), stroke)

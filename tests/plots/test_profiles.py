@@ -34,8 +34,7 @@ def curve(axes: Axes) -> tuple[np.ndarray, np.ndarray]:
     return np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
 
 
-def test_every_joint_has_its_samples_derivatives_limits_and_units(
-        arm: Arm, make_trajectory: MakeTrajectory) -> None:
+def test_every_joint_has_its_samples_derivatives_limits_and_units(arm: Arm, make_trajectory: MakeTrajectory) -> None:
     trajectory = make_trajectory()
     figure = plot_profiles(trajectory, arm)
     for k, (joint, low, high) in enumerate(zip(arm.joints, (-90, -5, -100), (80, 30, 100), strict=True)):
@@ -49,7 +48,11 @@ def test_every_joint_has_its_samples_derivatives_limits_and_units(
             assert axes.get_ylim()[0] < limits_drawn(axes)[0] < limits_drawn(axes)[1] < axes.get_ylim()[1]
         assert joint.name in panel(figure, arm, k, 0).get_ylabel()
     assert [panel(figure, arm, 0, order).texts[0].get_text() for order in range(4)] == [
-        "Position", "Velocity", "Acceleration", "Jerk"]
+        "Position",
+        "Velocity",
+        "Acceleration",
+        "Jerk",
+    ]
     assert all(panel(figure, arm, arm.n_joints - 1, order).get_xlabel() == "time (s)" for order in range(4))
 
 
@@ -70,8 +73,7 @@ def test_the_shading_is_where_the_pen_is_down(arm: Arm, make_trajectory: MakeTra
         assert all((span.y0, span.y1) == (0, 1) for span in spans)
 
 
-def test_a_broken_limit_is_named_and_marked_and_a_kept_one_is_not(
-        arm: Arm, make_trajectory: MakeTrajectory) -> None:
+def test_a_broken_limit_is_named_and_marked_and_a_kept_one_is_not(arm: Arm, make_trajectory: MakeTrajectory) -> None:
     kept = panel(plot_profiles(make_trajectory(), arm), arm, 0, 0)
     assert kept.get_title("right") == "50.0 deg to spare"
     assert len(kept.lines) == 3
@@ -82,10 +84,12 @@ def test_a_broken_limit_is_named_and_marked_and_a_kept_one_is_not(
     assert broken.get_ylim()[1] > trajectory.positions[:, 0].max()
 
 
-@pytest.mark.parametrize(("share", "remark"), [(0.5, "peak 50 % of limit"), (1.5, "peak 150 % of limit"),
-                                               (20.0, "peak 20 times the limit")])
+@pytest.mark.parametrize(
+    ("share", "remark"), [(0.5, "peak 50 % of limit"), (1.5, "peak 150 % of limit"), (20.0, "peak 20 times the limit")]
+)
 def test_the_peak_is_told_as_a_share_of_the_limit(
-        arm: Arm, make_trajectory: MakeTrajectory, share: float, remark: str) -> None:
+    arm: Arm, make_trajectory: MakeTrajectory, share: float, remark: str
+) -> None:
     velocity = finite_difference(make_trajectory().positions, 100.0, 1)[1][:, 0]
     trajectory = make_trajectory(swing=share * 800 / np.abs(velocity).max())
     assert panel(plot_profiles(trajectory, arm), arm, 0, 1).get_title("right") == remark
@@ -104,8 +108,17 @@ def test_a_long_trajectory_is_thinned_with_its_peaks(arm: Arm, make_trajectory: 
 
 @pytest.mark.parametrize("n_samples", [1, 2, 5])
 def test_the_shortest_trajectories_have_a_picture(arm: Arm, n_samples: int) -> None:
-    still = Trajectory("three", "dot.svg", "path", 100.0, arm.column_names, np.zeros((n_samples, 3)),
-                       np.zeros(n_samples, dtype=bool), np.full(n_samples, -1), (1, 0, 0, 1, 0, 0))
+    still = Trajectory(
+        "three",
+        "dot.svg",
+        "path",
+        100.0,
+        arm.column_names,
+        np.zeros((n_samples, 3)),
+        np.zeros(n_samples, dtype=bool),
+        np.full(n_samples, -1),
+        (1, 0, 0, 1, 0, 0),
+    )
     assert panel(plot_profiles(still, arm), arm, 0, 1).get_title("right") == "peak 0 % of limit"
 
 

@@ -75,5 +75,5 @@ def test_spans_account_for_all_the_time_that_the_pen_is_down(pen: list[bool], n_
     assert np.all(spans[1:, 0] >= spans[:-1, 1] - 1e-12)
     assert np.all((spans[:, 2] > 0) & (spans[:, 2] <= 1))
     for start, end, share in spans:
-        inside = pen[round(start * 20 + 0.5):round(end * 20 + 0.5)]
+        inside = pen[round(start * 20 + 0.5) : round(end * 20 + 0.5)]
         assert sum(inside) == pytest.approx(share * len(inside))

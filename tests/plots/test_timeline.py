@@ -19,29 +19,44 @@ RATE_HZ = 50.0
 
 def hopping() -> tuple[Trajectory, FloatArray]:
     """Comes down, dwells, draws, lifts and travels, in steps of a millimetre where it moves."""
-    way = ([(0, 2 - k, Phase.LOWERING if k else Phase.TRAVELLING) for k in range(2)] + [(0, 0, Phase.RESTING)] * 3
-           + [(k, 0, Phase.DRAWING) for k in range(5)] + [(5, 0, Phase.LIFTING)]
-           + [(5 + k, 1 + k, Phase.TRAVELLING) for k in range(4)])
+    way = (
+        [(0, 2 - k, Phase.LOWERING if k else Phase.TRAVELLING) for k in range(2)]
+        + [(0, 0, Phase.RESTING)] * 3
+        + [(k, 0, Phase.DRAWING) for k in range(5)]
+        + [(5, 0, Phase.LIFTING)]
+        + [(5 + k, 1 + k, Phase.TRAVELLING) for k in range(4)]
+    )
     tip_mm = np.array([(x, 0.0, z) for x, z, _ in way] + [(9, 0.0, 5)], dtype=np.float64)
     pen = tip_mm[:, 2] == 0
-    trajectory = Trajectory("any", "hop.svg", "path", RATE_HZ, ("x_mm",), tip_mm[:, :1], pen,
-                            np.where(pen, 0, TRAVELLING), (1, 0, 0, 1, 0, 0))
+    trajectory = Trajectory(
+        "any",
+        "travel move.svg",
+        "path",
+        RATE_HZ,
+        ("x_mm",),
+        tip_mm[:, :1],
+        pen,
+        np.where(pen, 0, TRAVELLING),
+        (1, 0, 0, 1, 0, 0),
+    )
     return trajectory, tip_mm
 
 
 def test_each_step_has_the_phase_that_it_is_made_of() -> None:
     trajectory, tip_mm = hopping()
     assert [Phase(phase).name for phase in phases_of(trajectory, tip_mm, 1.0)] == (
-        ["TRAVELLING", "LOWERING"] + ["RESTING"] * 3 + ["DRAWING"] * 5 + ["LIFTING"] + ["TRAVELLING"] * 4)
+        ["TRAVELLING", "LOWERING"] + ["RESTING"] * 3 + ["DRAWING"] * 5 + ["LIFTING"] + ["TRAVELLING"] * 4
+    )
 
 
-@given(st.integers(0, 2 ** 32 - 1), st.integers(1, 80), st.floats(0.1, 4))
+@given(st.integers(0, 2**32 - 1), st.integers(1, 80), st.floats(0.1, 4))
 def test_the_phases_add_up_to_the_duration(seed: int, n_samples: int, clearance_mm: float) -> None:
     random = np.random.default_rng(seed)
     tip_mm = np.round(random.uniform(0, 5, (n_samples, 3)) * random.integers(0, 2, (n_samples, 1)))
     pen = random.random(n_samples) < 0.5
-    trajectory = Trajectory("any", "", "path", RATE_HZ, ("x_mm",), tip_mm[:, :1], pen, np.where(pen, 0, TRAVELLING),
-                            (1, 0, 0, 1, 0, 0))
+    trajectory = Trajectory(
+        "any", "", "path", RATE_HZ, ("x_mm",), tip_mm[:, :1], pen, np.where(pen, 0, TRAVELLING), (1, 0, 0, 1, 0, 0)
+    )
     phases = phases_of(trajectory, tip_mm, clearance_mm)
     assert len(phases) == n_samples - 1
     assert seconds_in(phases, RATE_HZ).sum() == pytest.approx(trajectory.duration_s)
@@ -62,7 +77,10 @@ def test_bars_lie_where_the_phases_do_and_totals_beside_them() -> None:
     assert [bar.get_width() for bar in totals.patches] == pytest.approx(seconds_in(phases, RATE_HZ))
     assert [text.get_text() for text in totals.texts][Phase.DRAWING] == "0.10 s, 33.3 %"
     assert (height.get_xlabel(), height.get_ylabel(), totals.get_xlabel()) == (
-        "time (s)", "tip height (mm)", "total (s)")
+        "time (s)",
+        "tip height (mm)",
+        "total (s)",
+    )
 
 
 def test_a_part_of_the_time_is_counted_alone() -> None:

@@ -7,31 +7,35 @@ import pytest
 from matplotlib.collections import QuadMesh
 
 from planner.arms.arm_file import load_arm
-from planner.arms.paper_map import paper_map
-from planner.arms.posture_field import posture_field
-from planner.arms.sensitivity import sideways_error
+from planner.kinematics.sensitivity import sideways_error
 from planner.plots.workspace import plot_workspace
+from planner.redundancy.configuration_map import configuration_map_of
 from planner.settings import CanvasKind
+from planner.workspace.paper_map import paper_map
 
 SCARA = load_arm("scara")
 CANVASES_MM = {
     kind: np.array([[near + height, width / 2], [near + height, -width / 2], [near, -width / 2], [near, width / 2]])
-    for kind, near, width, height in ((CanvasKind.DOCUMENTED, 60.0, 120.0, 130.0),
-                                      (CanvasKind.OPTIMAL, 60.0, 240.0, 90.0), (CanvasKind.USABLE, 70.0, 200.0, 80.0))}
+    for kind, near, width, height in (
+        (CanvasKind.DOCUMENTED, 60.0, 120.0, 130.0),
+        (CanvasKind.OPTIMAL, 60.0, 240.0, 90.0),
+        (CanvasKind.USABLE, 70.0, 200.0, 80.0),
+    )
+}
 
 
-def test_figures_are_those_of_the_postures_the_arm_draws_with() -> None:
+def test_figures_are_those_of_the_configurations_the_arm_draws_with() -> None:
     figures = paper_map(SCARA)
     kept = np.isfinite(figures.manipulability)
     assert 0.5 < kept.mean() < 1.0  # the shoulder's limit is in the way on one side
     np.testing.assert_array_equal(kept, np.isfinite(figures.sideways_error_mm))
     radius = np.hypot(figures.x_mm, figures.y_mm)
     a1, a2 = (joint.a_mm for joint in SCARA.joints[:2])
-    cosine = (radius ** 2 - a1 ** 2 - a2 ** 2) / (2 * a1 * a2)
+    cosine = (radius**2 - a1**2 - a2**2) / (2 * a1 * a2)
     np.testing.assert_allclose(figures.manipulability[kept], a1 * a2 * np.sqrt(1 - cosine[kept] ** 2), rtol=1e-6)
     places = np.column_stack((figures.x_mm[kept], figures.y_mm[kept], np.zeros(kept.sum())))[::97]
-    postures, _ = posture_field(SCARA).postures_at(places)
-    np.testing.assert_allclose(figures.sideways_error_mm[kept][::97], sideways_error(SCARA, postures), rtol=1e-9)
+    configurations, _ = configuration_map_of(SCARA).configurations_at(places)
+    np.testing.assert_allclose(figures.sideways_error_mm[kept][::97], sideways_error(SCARA, configurations), rtol=1e-9)
 
 
 def test_both_maps_show_figures_ring_canvas_and_base_seen_from_behind_the_base() -> None:
@@ -39,8 +43,9 @@ def test_both_maps_show_figures_ring_canvas_and_base_seen_from_behind_the_base()
     figure = plot_workspace("scara", figures, CANVASES_MM, (60.0, 198.0))
     ring, *maps = [axes for axes in figure.axes if axes.get_xlabel() == "arm y (mm)"]
     assert len(maps) == 2
-    for axes, values in zip(maps, (figures.manipulability / np.nanmax(figures.manipulability),
-                                   figures.sideways_error_mm), strict=True):
+    for axes, values in zip(
+        maps, (figures.manipulability / np.nanmax(figures.manipulability), figures.sideways_error_mm), strict=True
+    ):
         (mesh,) = [item for item in axes.collections if isinstance(item, QuadMesh)]
         shown = np.ma.filled(mesh.get_array(), np.nan)
         corners = np.stack((values[:-1, :-1], values[1:, :-1], values[:-1, 1:], values[1:, 1:]))
@@ -56,8 +61,12 @@ def test_both_maps_show_figures_ring_canvas_and_base_seen_from_behind_the_base()
         assert left > 198 > -198 > right
         assert low < 0 < 198 < high
     shapes = {patch.get_label(): patch for patch in ring.patches}
-    assert set(shapes) == {"reach of the pen", "documented canvas, 120 × 130 mm", "optimal canvas, 240 × 90 mm",
-                           "usable canvas, 200 × 80 mm"}
+    assert set(shapes) == {
+        "reach of the pen",
+        "documented canvas, 120 × 130 mm",
+        "optimal canvas, 240 × 90 mm",
+        "usable canvas, 200 × 80 mm",
+    }
     for kind, corners in CANVASES_MM.items():
         (shape,) = [patch for label, patch in shapes.items() if label.startswith(kind)]
         np.testing.assert_array_equal(shape.get_xy()[:4, ::-1], corners)

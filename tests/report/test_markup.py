@@ -55,6 +55,7 @@ def test_tables_and_definitions_have_every_cell(rows: list[tuple[str, str, str]]
     cells = Reader(table(("a", "b", "c"), rows))
     assert [tag for tag, _ in cells.tags].count("td") == 3 * len(rows)
     assert [attributes["class"] for tag, attributes in cells.tags if tag == "td"] == ["text", "figure", "figure"] * len(
-        rows)
+        rows
+    )
     terms = Reader(definitions((term, told) for term, told, _ in rows))
     assert "".join(terms.text) == "".join(clean(term) + clean(told) for term, told, _ in rows)

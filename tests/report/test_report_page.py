@@ -25,8 +25,16 @@ def test_a_page_in_the_place_of_another(tmp_path: Path) -> None:
     page = tmp_path / "deep" / "er" / "index.html"
     page.parent.mkdir(parents=True)
     page.write_text("what was here before")
-    command = [str(tmp_path / NAME), "-o", str(tmp_path / "traj.csv"), "--report", str(page.parent), "--speed", "40",
-               "--quiet"]
+    command = [
+        str(tmp_path / NAME),
+        "-o",
+        str(tmp_path / "traj.csv"),
+        "--report",
+        str(page.parent),
+        "--speed",
+        "40",
+        "--quiet",
+    ]
     assert main(command) == 0
     assert [path.name for path in page.parent.iterdir()] == ["index.html"]
     text = page.read_text(encoding="utf-8")
@@ -39,8 +47,9 @@ def test_a_page_in_the_place_of_another(tmp_path: Path) -> None:
 
 def _asks_for_nothing(page: Reader, text: str) -> None:
     assert not {tag for tag, _ in page.tags} & {"script", "link", "iframe", "object", "a"}
-    addresses = [value for _, attributes in page.tags for name, value in attributes.items()
-                 if name in {"src", "srcset", "href"}]
+    addresses = [
+        value for _, attributes in page.tags for name, value in attributes.items() if name in {"src", "srcset", "href"}
+    ]
     assert addresses
     assert all(value is not None and value.startswith("data:image/png;base64,") for value in addresses)
     assert "url(" not in text
@@ -75,12 +84,15 @@ def _tells_what_was_planned(told: list[str], command: str) -> None:
         assert line in told, line
 
 
-@pytest.mark.parametrize("obstacle", ["a file", "a file in between", "a folder of the page's name", "the trajectory"])
+@pytest.mark.parametrize(
+    "infeasible_path", ["a file", "a file in between", "a folder of the page's name", "the trajectory"]
+)
 def test_a_page_that_cannot_be_written_is_refused_before_planning(
-        obstacle: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    infeasible_path: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     drawing, folder, target = tmp_path / "drawing.svg", tmp_path / "report", tmp_path / "traj.csv"
     drawing.write_text("not read")
-    match obstacle:
+    match infeasible_path:
         case "a file":
             folder.write_text("in the way")
         case "a file in between":

@@ -9,10 +9,10 @@ from scipy.interpolate import BSpline, PPoly
 
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import DEGREE, JointPaths, interpolate
+from planner.motion.stroke_motion import StrokeMotions, motions
 from planner.placement.pen_path import smooth_paths
 from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
-from planner.timing.stroke_motion import StrokeMotions, motions
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
 LIMITS = Limits(np.array([4.0, 6.0]), np.array([60.0, 80.0]), np.array([1500.0, 1200.0]))
@@ -36,15 +36,17 @@ def polar_paths(lines: list[FloatArray]) -> JointPaths:
     return interpolate(pen.n_cells, np.column_stack((np.arctan2(y, x), np.hypot(x, y) / 10)))
 
 
-def problem_of(paths: JointPaths, limits: Limits = LIMITS, rate_cap: float = np.inf) -> TimingProblem:
+def problem_of(paths: JointPaths, limits: Limits = LIMITS, rate_limit: float = np.inf) -> TimingProblem:
     derivatives = (paths.positions(FRACTIONS, 1), paths.positions(FRACTIONS, 2), paths.positions(FRACTIONS, 3))
-    return TimingProblem.of(paths.n_cells, derivatives, limits,
-                            np.full((int(paths.n_cells.sum()), len(FRACTIONS)), rate_cap))
+    return TimingProblem.of(
+        paths.n_cells, derivatives, limits, np.full((int(paths.n_cells.sum()), len(FRACTIONS)), rate_limit)
+    )
 
 
-def timed(paths: JointPaths, limits: Limits = LIMITS, rate_hz: float = 100.0, rate_cap: float = np.inf
-          ) -> StrokeMotions:
-    return motions(paths, minimum_time(problem_of(paths, limits, rate_cap)).rates, limits, rate_hz)
+def timed(
+    paths: JointPaths, limits: Limits = LIMITS, rate_hz: float = 100.0, rate_limit: float = np.inf
+) -> StrokeMotions:
+    return motions(paths, minimum_time(problem_of(paths, limits, rate_limit)).rates, limits, rate_hz)
 
 
 def seen_often(motion: StrokeMotions, times: int) -> StrokeMotions:
@@ -56,14 +58,17 @@ def joint_curve(paths: JointPaths, index: int) -> BSpline[np.float64]:
     """One joint path as SciPy's spline over sigma."""
     first = int((paths.n_cells[:index] + DEGREE).sum())
     n_cells = int(paths.n_cells[index])
-    return BSpline(np.arange(-DEGREE, n_cells + DEGREE + 1, dtype=np.float64),
-                   paths.controls[first:first + n_cells + DEGREE], DEGREE)
+    return BSpline(
+        np.arange(-DEGREE, n_cells + DEGREE + 1, dtype=np.float64),
+        paths.controls[first : first + n_cells + DEGREE],
+        DEGREE,
+    )
 
 
 def rate_curve(motion: StrokeMotions, index: int) -> PPoly:
     """(dsigma/dt)^2 of one stroke as SciPy's piecewise polynomial over sigma."""
     first, n_cells = int(motion.paths.n_cells[:index].sum()), int(motion.paths.n_cells[index])
-    return rates_over_sigma(motion.rates[first:first + n_cells])
+    return rates_over_sigma(motion.rates[first : first + n_cells])
 
 
 def rates_over_sigma(rates: FloatArray) -> PPoly:
@@ -77,17 +82,20 @@ def duration_s(rate: PPoly, n_cells: int, per_cell: int = 400) -> float:
     return float((1 / np.sqrt(rate(sigma))).sum() / per_cell)
 
 
-def rates_by_formula(curve: BSpline[np.float64], rate: PPoly, sigma: FloatArray
-                     ) -> tuple[FloatArray, FloatArray, FloatArray]:
+def rates_by_formula(
+    curve: BSpline[np.float64], rate: PPoly, sigma: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Joint velocity, acceleration and jerk (n, n_joints) by the chain rule, off the knots."""
     q1, q2, q3 = (curve.derivative(order)(sigma) for order in (1, 2, 3))
     b, slope, bend = (rate(sigma)[:, None], rate.derivative(1)(sigma)[:, None], rate.derivative(2)(sigma)[:, None])
-    return (q1 * np.sqrt(b), q2 * b + q1 * slope / 2,
-            (q3 * b + 1.5 * q2 * slope + 0.5 * q1 * bend) * np.sqrt(b))
+    return (q1 * np.sqrt(b), q2 * b + q1 * slope / 2, (q3 * b + 1.5 * q2 * slope + 0.5 * q1 * bend) * np.sqrt(b))
 
 
 def share_of_limits(samples: FloatArray, period_s: float, limits: Limits = LIMITS) -> FloatArray:
     """(3,) largest share of the velocity, acceleration and jerk limits, by differences of samples."""
-    return np.array([
-        (np.abs(np.diff(samples, order, axis=0)) / period_s ** order / limit).max(initial=0.0)
-        for order, limit in enumerate((limits.velocity, limits.acceleration, limits.jerk), 1)])
+    return np.array(
+        [
+            (np.abs(np.diff(samples, order, axis=0)) / period_s**order / limit).max(initial=0.0)
+            for order, limit in enumerate((limits.velocity, limits.acceleration, limits.jerk), 1)
+        ]
+    )

@@ -2,7 +2,7 @@
 
 Unknown are b = (dsigma/dt)^2 and its slope at the ends of fine cells with b'' constant in each. Divided by sqrt(b), a
 jerk limit is linear but for its right-hand side J / sqrt(b), which is convex: its tangent lies below, so every
-solution of a linear programme keeps the true limit, and the time falls from one to the next.
+solution of a linear program keeps the true limit, and the time falls from one to the next.
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ _MOST_ROUNDS = 120
 _SETTLED = 2e-5
 
 
-def least_time_s(derivative: Derivative, n_cells: int, limits: Limits, cap: Callable[[FloatArray], FloatArray],
-                 finer: int = 2) -> float:
+def least_time_s(
+    derivative: Derivative, n_cells: int, limits: Limits, cap: Callable[[FloatArray], FloatArray], finer: int = 2
+) -> float:
     """The least time from sigma = 0 to n_cells that is found from a constant rate, limits kept at both ends and in
     the middle of every fine cell. cap: sigma (n,) to the largest dsigma/dt (n,) of its own."""
     step = 1.0 / finer
@@ -48,8 +49,11 @@ def least_time_s(derivative: Derivative, n_cells: int, limits: Limits, cap: Call
         for joint in range(len(limits.jerk)):
             a, j = limits.acceleration[joint], limits.jerk[joint]
             accelerations.append(diags_array(q2[joint] / a) @ at + diags_array(0.5 * q1[joint] / a) @ slope_at)
-            jerks.append(diags_array(q3[joint] / j) @ at + diags_array(1.5 * q2[joint] / j) @ slope_at
-                         + diags_array(0.5 * q1[joint] / j) @ hstack((none, bend)))
+            jerks.append(
+                diags_array(q3[joint] / j) @ at
+                + diags_array(1.5 * q2[joint] / j) @ slope_at
+                + diags_array(0.5 * q1[joint] / j) @ hstack((none, bend))
+            )
             room.append(at)
     continuity = hstack((right - left, -0.5 * step * (left + right)))
     acceleration, jerk, room_at = vstack(accelerations), vstack(jerks), vstack(room)
@@ -62,16 +66,21 @@ def least_time_s(derivative: Derivative, n_cells: int, limits: Limits, cap: Call
         for at, weight in zip(points, _SIMPSON, strict=True):
             objective += at.T @ (-0.5 * step * weight * (at @ x) ** -1.5)
         b = room_at @ x
-        tangent = diags_array(0.5 * b ** -1.5) @ room_at
+        tangent = diags_array(0.5 * b**-1.5) @ room_at
         largest = 1.5 / np.sqrt(b)
         lower = np.concatenate((np.maximum(x[:count] / (1 + trust), 1e-9 * start), np.full(count, -np.inf)))
         upper = np.concatenate((np.minimum(x[:count] * (1 + trust), ceiling), np.full(count, np.inf)))
         unit = np.concatenate((x[:count], np.full(count, start)))  # variables of about one
         scale = diags_array(unit)
         solution = linprog(
-            objective * unit, A_ub=vstack((acceleration, -acceleration, jerk + tangent, tangent - jerk)) @ scale,
-            b_ub=np.concatenate((np.ones(2 * acceleration.shape[0]), largest, largest)), A_eq=continuity @ scale,
-            b_eq=np.zeros(count - 1), bounds=np.column_stack((lower / unit, upper / unit)), method="highs")
+            objective * unit,
+            A_ub=vstack((acceleration, -acceleration, jerk + tangent, tangent - jerk)) @ scale,
+            b_ub=np.concatenate((np.ones(2 * acceleration.shape[0]), largest, largest)),
+            A_eq=continuity @ scale,
+            b_eq=np.zeros(count - 1),
+            bounds=np.column_stack((lower / unit, upper / unit)),
+            method="highs",
+        )
         if solution.status != 0:
             raise ArithmeticError(f"HiGHS: {solution.message}")
         found = solution.x * unit
@@ -92,8 +101,9 @@ def _time_s(points: list[csr_array], x: FloatArray, step: float) -> float:
     values = [at @ x for at in points]
     if min(value.min() for value in values) <= 0:
         return float("inf")
-    return float(sum(step * weight * (1 / np.sqrt(value)).sum()
-                     for value, weight in zip(values, _SIMPSON, strict=True)))
+    return float(
+        sum(step * weight * (1 / np.sqrt(value)).sum() for value, weight in zip(values, _SIMPSON, strict=True))
+    )
 
 
 def _steady_b(derivative: Derivative, nodes: FloatArray, limits: Limits, ceiling: FloatArray) -> float:

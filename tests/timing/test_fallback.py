@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planner.arrays import FloatArray
+from planner.motion.stroke_motion import motions
 from planner.pipeline import plan
 from planner.settings import PlanSettings
 from planner.timing import interior_point, path_timing
 from planner.timing.path_timing import minimum_time
-from planner.timing.stroke_motion import motions
 from tests.timing.rig import LIMITS, LINES, joint_curve, polar_paths, problem_of, rate_curve, rates_by_formula
 from tests.timing.test_path_timing import FINE_HZ, lines_made, steady_s
 
@@ -25,12 +25,13 @@ TWO_LINES = """<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60m
 @settings(deadline=None, max_examples=12)
 @given(lines_made, st.integers(0, 6))
 def test_stopped_early_a_timing_keeps_the_limits_and_is_never_slower_than_a_steady_pace(
-        line: FloatArray, iterations: int) -> None:
+    line: FloatArray, iterations: int
+) -> None:
     paths = polar_paths([line])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(path_timing, "_MOST_ITERATIONS", iterations)
         timing = minimum_time(problem_of(paths))
-    assert not timing.settled.any()
+    assert not timing.converged.any()
     motion = motions(paths, timing.rates, LIMITS, FINE_HZ)
     assert motion.n_periods[0] / FINE_HZ <= steady_s(paths, LIMITS) * (1 + 1e-3)
     n_cells = int(paths.n_cells[0])
@@ -42,11 +43,12 @@ def test_stopped_early_a_timing_keeps_the_limits_and_is_never_slower_than_a_stea
 
 @pytest.mark.parametrize("lost", range(len(LINES)))
 def test_a_path_whose_newton_system_fails_leaves_the_others_as_they_were(
-        lost: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    lost: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     paths = polar_paths(list(LINES.values()))
     problem = problem_of(paths)
     whole = minimum_time(problem)
-    assert whole.settled.all()
+    assert whole.converged.all()
     unknown = int((2 * paths.n_cells[:lost] + 2).sum()) + 3
     factorise, calls = interior_point.dpbtrf, iter([unknown])
 
@@ -56,8 +58,8 @@ def test_a_path_whose_newton_system_fails_leaves_the_others_as_they_were(
 
     monkeypatch.setattr(interior_point, "dpbtrf", fail_once)
     timing = minimum_time(problem)
-    assert timing.settled.tolist() == [index != lost for index in range(len(LINES))]
-    others = np.repeat(timing.settled, paths.n_cells)
+    assert timing.converged.tolist() == [index != lost for index in range(len(LINES))]
+    others = np.repeat(timing.converged, paths.n_cells)
     np.testing.assert_allclose(timing.rates[others], whole.rates[others], rtol=1e-2, atol=1e-2 * whole.rates.max())
     assert np.isfinite(timing.rates).all()
 

@@ -13,10 +13,10 @@ from scipy.interpolate import BSpline
 
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import JointPaths
+from planner.motion.stroke_motion import motions
 from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
-from planner.timing.ruckig_profile import rest_to_rest
-from planner.timing.stroke_motion import motions
+from planner.travel.ruckig_profile import rest_to_rest
 from tests.timing.rig import (
     LIMITS,
     LINES,
@@ -35,16 +35,21 @@ from tests.timing.rig import (
 FINE_HZ = 1e5
 
 places = st.tuples(st.floats(50, 130), st.floats(-60, 60)).map(lambda place: tuple(round(value, 3) for value in place))
-lines_made = st.lists(places, min_size=2, max_size=6, unique=True).map(np.array).filter(
-    lambda line: np.hypot(*np.diff(line, axis=0).T).min() > 1e-3)
+lines_made = (
+    st.lists(places, min_size=2, max_size=6, unique=True)
+    .map(np.array)
+    .filter(lambda line: np.hypot(*np.diff(line, axis=0).T).min() > 1e-3)
+)
 
 
 def steady_s(paths: JointPaths, limits: Limits) -> float:
     """Duration of the fastest motion of a single path with sigma at a constant rate."""
     n_cells = int(paths.n_cells[0])
     curve, sigma = joint_curve(paths, 0), np.linspace(0, n_cells, 20 * n_cells + 1)
-    rates = [(limit / np.maximum(np.abs(curve.derivative(order)(sigma)), 1e-12)).min() ** (1 / order)
-             for order, limit in enumerate((limits.velocity, limits.acceleration, limits.jerk), 1)]
+    rates = [
+        (limit / np.maximum(np.abs(curve.derivative(order)(sigma)), 1e-12)).min() ** (1 / order)
+        for order, limit in enumerate((limits.velocity, limits.acceleration, limits.jerk), 1)
+    ]
     return n_cells / float(min(rates))
 
 
@@ -79,7 +84,7 @@ def test_samples_begin_and_end_at_rest_at_the_ends_of_the_path(line: FloatArray)
     assert len(samples) == motion.n_periods[0] + 1
     np.testing.assert_allclose(samples[[0, -1]], curve([0.0, float(paths.n_cells[0])]), atol=1e-12)
     # The least that rest allows: from it, a constant jerk gets a joint no further than J t^3 / 6.
-    assert (np.abs(samples[[1, -2]] - samples[[0, -1]]) <= LIMITS.jerk * 0.01 ** 3 / 6 * 1.001).all()
+    assert (np.abs(samples[[1, -2]] - samples[[0, -1]]) <= LIMITS.jerk * 0.01**3 / 6 * 1.001).all()
 
 
 @settings(deadline=None, max_examples=15)
@@ -105,16 +110,16 @@ def test_a_stroke_is_timed_as_if_it_were_alone() -> None:
 
 def test_the_cap_on_the_rate_is_kept() -> None:
     paths = polar_paths([LINES["bend"]])
-    free, capped = timed(paths), timed(paths, rate_cap=20.0)
+    independent, capped = timed(paths), timed(paths, rate_limit=20.0)
     knots = np.arange(int(paths.n_cells[0]) + 1)
-    assert rate_curve(free, 0)(knots).max() > 1.5 * 20.0 ** 2
-    assert rate_curve(capped, 0)(knots[:-1]).max() <= 20.0 ** 2
+    assert rate_curve(independent, 0)(knots).max() > 1.5 * 20.0**2
+    assert rate_curve(capped, 0)(knots[:-1]).max() <= 20.0**2
 
 
-@pytest.mark.parametrize(("distance_mm", "velocity", "most"), [
-    (80.0, 30.0, 1.02), (40.0, 1e3, 1.02), (3.0, 1e3, 1.06)])
+@pytest.mark.parametrize(("distance_mm", "velocity", "most"), [(80.0, 30.0, 1.02), (40.0, 1e3, 1.02), (3.0, 1e3, 1.06)])
 def test_one_joint_on_a_straight_line_is_nearly_as_fast_as_its_limits_allow(
-        distance_mm: float, velocity: float, most: float) -> None:
+    distance_mm: float, velocity: float, most: float
+) -> None:
     """Against the jerk-limited move from rest to rest, which is known: with and without a phase of full speed. The
     shorter the line, the fewer cells there are to shape the motion with."""
     limits = Limits(np.array([1e3, velocity]), np.array([1e6, 400.0]), np.array([1e9, 20000.0]))
@@ -153,13 +158,19 @@ def least_time(paths: JointPaths, limits: Limits) -> float:
             q1, q2, q3 = (curve.derivative(order)(sigma)[:, joint] for order in (1, 2, 3))
             within((q3 * b + 1.5 * q2 * slope + 0.5 * q1 * bend) * casadi.sqrt(b) / limits.jerk[joint], -1, 1)
             if share < 0.1:
-                within(q1 ** 2 * b / limits.velocity[joint] ** 2, 0, 1)
+                within(q1**2 * b / limits.velocity[joint] ** 2, 0, 1)
                 within((q2 * b + q1 * slope / 2) / limits.acceleration[joint], -1, 1)
     nodes, node_weights = np.polynomial.legendre.leggauss(6)
-    time = sum(casadi.sum1(weight / 2 / casadi.sqrt(at(np.arange(n_cells) + (node + 1) / 2, 0)))
-               for node, weight in zip(nodes, node_weights, strict=True))
-    solver = casadi.nlpsol("time", "ipopt", {"x": unknown, "f": time, "g": casadi.vertcat(*constraints)}, {
-        "ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False, "ipopt.tol": 1e-6})
+    time = sum(
+        casadi.sum1(weight / 2 / casadi.sqrt(at(np.arange(n_cells) + (node + 1) / 2, 0)))
+        for node, weight in zip(nodes, node_weights, strict=True)
+    )
+    solver = casadi.nlpsol(
+        "time",
+        "ipopt",
+        {"x": unknown, "f": time, "g": casadi.vertcat(*constraints)},
+        {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False, "ipopt.tol": 1e-6},
+    )
     solution = solver(x0=start, lbg=np.concatenate(low), ubg=np.concatenate(high))
     assert solver.stats()["success"]
     return float(solution["f"])

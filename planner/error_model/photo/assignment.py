@@ -15,9 +15,9 @@ from scipy.spatial.distance import cdist
 from planner.arrays import FloatArray, IntArray
 
 _SCATTERS_MM = (6.0, 5.0, 4.0, 3.2, 2.6, 2.1, 1.8, 1.5, 1.2, 1.2)
-_SCATTER_MM = 1.2  # beside the modes: slack, and postures that differ
+_SCATTER_MM = 1.2  # beside the modes: slack, and configurations that differ
 _GATE_MM = 4.0
-_MISS = _GATE_MM ** 2 / (2 * _SCATTER_MM ** 2)
+_MISS = _GATE_MM**2 / (2 * _SCATTER_MM**2)
 _NO_DOT = np.exp(-_MISS)
 _WARP_SD_MM = np.array([4.0, 2.0, 2.0, 1.0, 1.0, 1.0])  # shift, linear and quadratic, over half the extent
 _UNLIKE = 5.0
@@ -63,14 +63,14 @@ def _assigned(meant: FloatArray, dots: FloatArray, by_amount: FloatArray, shift:
     """The assignment that is found from a shift to begin with, and its negative log likelihood. by_amount: (2 n, k)."""
     moved, amounts = meant + shift, np.zeros(by_amount.shape[1])
     for scatter in _SCATTERS_MM:
-        likely = np.exp(-cdist(moved, dots, "sqeuclidean") / (2 * scatter ** 2))
+        likely = np.exp(-cdist(moved, dots, "sqeuclidean") / (2 * scatter**2))
         share = likely / (_NO_DOT + np.maximum(likely.sum(axis=0), likely.sum(axis=1)[:, None]))
         weight = share.sum(axis=1)
         pull = (share @ dots - weight[:, None] * meant).ravel()
-        normal = by_amount.T @ (np.repeat(weight, 2)[:, None] * by_amount) + scatter ** 2 * np.eye(len(amounts))
+        normal = by_amount.T @ (np.repeat(weight, 2)[:, None] * by_amount) + scatter**2 * np.eye(len(amounts))
         amounts = np.linalg.solve(normal, by_amount.T @ pull)
         moved = meant + (by_amount @ amounts).reshape(-1, 2)
-    cost = np.minimum(cdist(moved, dots, "sqeuclidean") / (2 * _SCATTER_MM ** 2), _MISS)
+    cost = np.minimum(cdist(moved, dots, "sqeuclidean") / (2 * _SCATTER_MM**2), _MISS)
     marks, chosen = linear_sum_assignment(cost)
     told = cost[marks, chosen] < _MISS
     assignment = np.full(len(meant), -1)

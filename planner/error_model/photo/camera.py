@@ -52,8 +52,13 @@ class Camera:
         """(...,): how far points of the page may be from where they are taken to be, along each axis, by the fit
         alone."""
         steps = 1e-6 * np.eye(_N_SHAPE)
-        px_by_shape = np.stack([(self._seen_px(self.shape + step, page_mm) - self._seen_px(self.shape - step, page_mm))
-                                / 2e-6 for step in steps], axis=-1)
+        px_by_shape = np.stack(
+            [
+                (self._seen_px(self.shape + step, page_mm) - self._seen_px(self.shape - step, page_mm)) / 2e-6
+                for step in steps
+            ],
+            axis=-1,
+        )
         by_shape = np.asarray(np.linalg.solve(self._jacobian(page_mm), px_by_shape), dtype=np.float64)
         sd: FloatArray = np.sqrt(np.einsum("...ij,jk,...ik->...i", by_shape, self.covariance, by_shape).mean(axis=-1))
         return sd
@@ -64,8 +69,10 @@ class Camera:
     def _jacobian(self, page_mm: FloatArray) -> FloatArray:
         """(..., 2, 2): px by mm."""
         steps = 1e-3 * np.eye(2)
-        return np.stack([(self.to_picture_px(page_mm + step) - self.to_picture_px(page_mm - step)) / 2e-3
-                         for step in steps], axis=-1)
+        return np.stack(
+            [(self.to_picture_px(page_mm + step) - self.to_picture_px(page_mm - step)) / 2e-3 for step in steps],
+            axis=-1,
+        )
 
 
 def fit_camera(tags: SeenTags, picture_shape: tuple[int, ...]) -> Camera:
@@ -81,17 +88,26 @@ def fit_camera(tags: SeenTags, picture_shape: tuple[int, ...]) -> Camera:
     def residuals(parameters: FloatArray) -> FloatArray:
         """In standard deviations. The last parameter is how far black reaches into white."""
         off = _seen(parameters[:_N_SHAPE], page + parameters[-1] * outward) - seen
-        return np.concatenate((off.ravel() * half / _CORNER_PX, parameters[8:_N_SHAPE] / _PRIOR_SD,
-                               parameters[-1:] / _SPREAD_SD))
+        return np.concatenate(
+            (off.ravel() * half / _CORNER_PX, parameters[8:_N_SHAPE] / _PRIOR_SD, parameters[-1:] / _SPREAD_SD)
+        )
 
-    found = least_squares(residuals, np.concatenate((_homography(page, seen), np.zeros(5))), loss="soft_l1",
-                          f_scale=2.0, x_scale="jac")
-    off = residuals(found.x)[:seen.size].reshape(-1, 2)
+    found = least_squares(
+        residuals, np.concatenate((_homography(page, seen), np.zeros(5))), loss="soft_l1", f_scale=2.0, x_scale="jac"
+    )
+    off = residuals(found.x)[: seen.size].reshape(-1, 2)
     excess = max(1.0, float(np.square(off).mean()))
     jacobian: FloatArray = np.asarray(found.jac)
     covariance = np.asarray(excess * np.linalg.inv(jacobian.T @ jacobian), dtype=np.float64)[:_N_SHAPE, :_N_SHAPE]
-    return Camera(found.x[:_N_SHAPE], covariance, centre, half, middle, half_mm,
-                  _CORNER_PX * float(np.sqrt(np.square(off).sum(axis=-1).mean())))
+    return Camera(
+        found.x[:_N_SHAPE],
+        covariance,
+        centre,
+        half,
+        middle,
+        half_mm,
+        _CORNER_PX * float(np.sqrt(np.square(off).sum(axis=-1).mean())),
+    )
 
 
 def _seen(shape: FloatArray, page: FloatArray) -> FloatArray:
@@ -103,8 +119,10 @@ def _seen(shape: FloatArray, page: FloatArray) -> FloatArray:
     x, y = straight[..., 0], straight[..., 1]
     r2 = x * x + y * y
     grown = 1 + r2 * (k1 + k2 * r2)
-    bent: FloatArray = np.stack((x * grown + 2 * p1 * x * y + p2 * (r2 + 2 * x * x),
-                                 y * grown + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y), axis=-1)
+    bent: FloatArray = np.stack(
+        (x * grown + 2 * p1 * x * y + p2 * (r2 + 2 * x * x), y * grown + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y),
+        axis=-1,
+    )
     return bent
 
 

@@ -39,12 +39,12 @@ def find_dots(ink: InkMap) -> Dots:
         on_rim = left == 0 or top == 0 or left + width == columns or top + height == rows
         if on_rim or max(width, height) > longest:
             continue
-        part = np.s_[max(top - reach, 0):top + height + reach, max(left - reach, 0):left + width + reach]
+        part = np.s_[max(top - reach, 0) : top + height + reach, max(left - reach, 0) : left + width + reach]
         near = cv2.dilate((labels[part] == number).astype(np.uint8), np.ones((2 * reach + 1, 2 * reach + 1), np.uint8))
         own = near.astype(bool) & np.isin(labels[part], (0, number))
         weight = np.where(own, ink.darkness[part], 0.0)
         total = float(weight.sum())
-        if total < _LEAST_INK_MM2 * ink.px_per_mm ** 2:
+        if total < _LEAST_INK_MM2 * ink.px_per_mm**2:
             continue
         down, right = np.nonzero(own)
         points = np.stack((right, down), axis=-1).astype(np.float64)
@@ -54,7 +54,6 @@ def find_dots(ink: InkMap) -> Dots:
         narrow, wide = np.sqrt(np.maximum(np.linalg.eigvalsh(spread), 0.0)) / ink.px_per_mm
         if wide <= _LONGEST_SD_MM:
             corner = np.array([part[1].start, part[0].start])
-            found.append((*ink.to_page_mm(middle + corner), total / ink.px_per_mm ** 2,
-                          wide - narrow))
+            found.append((*ink.to_page_mm(middle + corner), total / ink.px_per_mm**2, wide - narrow))
     table = np.array(found, dtype=np.float64).reshape(-1, 4)
     return Dots(table[:, :2], table[:, 2], table[:, 3])

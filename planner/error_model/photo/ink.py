@@ -56,24 +56,28 @@ class InkMap:
 
     def _at(self, values: Singles, page_mm: FloatArray) -> Singles:
         pixels = self.to_pixels(page_mm).astype(np.float32)
-        found = cv2.remap(values, pixels[..., 0], pixels[..., 1], cv2.INTER_LINEAR,
-                          borderMode=cv2.BORDER_CONSTANT, borderValue=0.0)
+        found = cv2.remap(
+            values, pixels[..., 0], pixels[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT, borderValue=0.0
+        )
         return np.asarray(found, dtype=np.float32)
 
 
-def from_above(picture: Picture, camera: Camera, low_mm: FloatArray, high_mm: FloatArray, px_per_mm: float
-               ) -> NDArray[np.uint8]:
+def from_above(
+    picture: Picture, camera: Camera, low_mm: FloatArray, high_mm: FloatArray, px_per_mm: float
+) -> NDArray[np.uint8]:
     """(rows, columns, 3): a box of the page, from page coordinates low to high, as if seen from straight above."""
     columns, rows = np.maximum(np.round((high_mm - low_mm) * px_per_mm).astype(int), 1)
     right, down = np.meshgrid((np.arange(columns) + 0.5) / px_per_mm, (np.arange(rows) + 0.5) / px_per_mm)
     page = np.stack((low_mm[0] + right, low_mm[1] + rows / px_per_mm - down), axis=-1)
     seen = camera.to_picture_px(page).astype(np.float32)
-    return np.asarray(cv2.remap(picture, seen[..., 0], seen[..., 1], cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE),
-                      dtype=np.uint8)
+    return np.asarray(
+        cv2.remap(picture, seen[..., 0], seen[..., 1], cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE), dtype=np.uint8
+    )
 
 
-def ink_map(picture: Picture, camera: Camera, low_mm: FloatArray, high_mm: FloatArray, printed_mm: FloatArray
-            ) -> InkMap:
+def ink_map(
+    picture: Picture, camera: Camera, low_mm: FloatArray, high_mm: FloatArray, printed_mm: FloatArray
+) -> InkMap:
     """The ink in a box of the page, of any colour: the darkest of three channels beside the paper round it.
 
     printed_mm: (n, 2, 2) ends of lines that were there before the ink.
@@ -83,8 +87,9 @@ def ink_map(picture: Picture, camera: Camera, low_mm: FloatArray, high_mm: Float
     view = from_above(picture, camera, low_mm, high_mm, px_per_mm)
     rows, columns = view.shape[:2]
     coarse = _COARSE_PX_PER_MM / px_per_mm
-    small = cv2.resize(view, (max(round(columns * coarse), 1), max(round(rows * coarse), 1)),
-                       interpolation=cv2.INTER_AREA)
+    small = cv2.resize(
+        view, (max(round(columns * coarse), 1), max(round(rows * coarse), 1)), interpolation=cv2.INTER_AREA
+    )
     paper = cv2.resize(cv2.medianBlur(small, _PAPER_KERNEL), (columns, rows), interpolation=cv2.INTER_LINEAR)
     light = LINEAR_LIGHT.astype(np.float32)
     darkness = 1 - (cv2.LUT(view, light) / np.maximum(cv2.LUT(paper, light), light[8])).min(axis=-1)

@@ -20,5 +20,4 @@ def write_measured(target: Path, measured: Iterable[MeasuredMark]) -> None:
         rows.writerow(COLUMNS)
         for each in measured:
             height = f"{each.contact.height_mm:.3f}" if each.contact else ""
-            rows.writerow((each.mark.number, *(f"{value:.3f}" for value in each.place_mm), height,
-                           f"{each.sd_mm:.3f}"))
+            rows.writerow((each.mark.number, *(f"{value:.3f}" for value in each.place_mm), height, f"{each.sd_mm:.3f}"))

@@ -20,8 +20,10 @@ LINEAR_LIGHT = (np.arange(256) / 255) ** 2.2
 """How much light the 256 values of a picture stand for, about."""
 
 _LEAST_PX = 400
-_NO_PICTURE = ("it is no whole picture that can be read; wanted JPEG, PNG or TIFF (a phone's HEIC has to be saved as "
-               "one of them first)")
+_NO_PICTURE = (
+    "it is no whole picture that can be read; wanted JPEG, PNG or TIFF (a phone's HEIC has to be saved as "
+    "one of them first)"
+)
 
 
 def read_picture(source: Path) -> Picture:
@@ -39,6 +41,8 @@ def read_picture(source: Path) -> Picture:
         reason = _NO_PICTURE if error.errno is None else f"cannot be read: {error.strerror or error}"
         raise PhotoError(str(source), reason) from error
     if min(upright.size) < _LEAST_PX:
-        raise PhotoError(str(source), f"{upright.width} x {upright.height} pixels are too few for a whole sheet; send "
-                         "the photo at its full size")
+        raise PhotoError(
+            str(source),
+            f"{upright.width} x {upright.height} pixels are too few for a whole sheet; send the photo at its full size",
+        )
     return np.ascontiguousarray(np.asarray(upright, dtype=np.uint8)[..., ::-1])

@@ -60,8 +60,9 @@ class Reading:
     warnings: tuple[str, ...]
 
 
-def read_sheet(source: str, picture: Picture, marks: Sequence[Mark], bars_mm: tuple[float, float] = (BAR_MM, BAR_MM)
-               ) -> Reading:
+def read_sheet(
+    source: str, picture: Picture, marks: Sequence[Mark], bars_mm: tuple[float, float] = (BAR_MM, BAR_MM)
+) -> Reading:
     """Read a picture of the sheet for some marks.
 
     bars_mm: how long the printed bars are by a ruler, the one across the page and the one along it.
@@ -73,23 +74,38 @@ def read_sheet(source: str, picture: Picture, marks: Sequence[Mark], bars_mm: tu
     meant = layout.to_page_mm(places_mm(marks))
     finest = float(camera.px_per_mm(meant)[..., 0].min())
     if finest < _LEAST_PX_PER_MM:
-        raise PhotoError(source, f"the sheet is too small in it, {finest:.1f} pixels to a millimetre where there are "
-                         f"least; it takes {_LEAST_PX_PER_MM:g}: go nearer, or hold the camera more from above")
+        raise PhotoError(
+            source,
+            f"the sheet is too small in it, {finest:.1f} pixels to a millimetre where there are "
+            f"least; it takes {_LEAST_PX_PER_MM:g}: go nearer, or hold the camera more from above",
+        )
     ink = _ink_of(picture, camera, layout, marks)
     dots = find_dots(ink)
     modes = modes_mm(marks)
-    assignment = assign(places_mm(marks), layout.to_sheet_mm(dots.places_mm), dots.ink_mm2,
-                        smooth_modes(places_mm(marks)) if modes is None else modes)
+    assignment = assign(
+        places_mm(marks),
+        layout.to_sheet_mm(dots.places_mm),
+        dots.ink_mm2,
+        smooth_modes(places_mm(marks)) if modes is None else modes,
+    )
     if np.all(assignment < 0):
         raise PhotoError(source, "no marks are on the sheet; photograph it once the pattern is drawn")
     scale = np.array([bars_mm[1], bars_mm[0]]) / BAR_MM
     found = [index for index, dot in enumerate(assignment) if dot >= 0]
     chosen = dots.only(assignment[found])
     contacts = _touch_downs(ink, layout, [marks[index] for index in found], chosen.places_mm)
-    sd = np.sqrt(camera.sd_mm(chosen.places_mm) ** 2 + (_DOT_PX / camera.px_per_mm(chosen.places_mm)[..., 0]) ** 2
-                 + _DOT_MM ** 2 + (_SMEAR * chosen.smear_mm) ** 2)
-    measured = [MeasuredMark(marks[index], place, float(spread), contact) for index, place, spread, contact
-                in zip(found, scale * layout.to_sheet_mm(chosen.places_mm), sd, contacts, strict=True)]
+    sd = np.sqrt(
+        camera.sd_mm(chosen.places_mm) ** 2
+        + (_DOT_PX / camera.px_per_mm(chosen.places_mm)[..., 0]) ** 2
+        + _DOT_MM**2
+        + (_SMEAR * chosen.smear_mm) ** 2
+    )
+    measured = [
+        MeasuredMark(marks[index], place, float(spread), contact)
+        for index, place, spread, contact in zip(
+            found, scale * layout.to_sheet_mm(chosen.places_mm), sd, contacts, strict=True
+        )
+    ]
     missing = tuple(mark for index, mark in enumerate(marks) if assignment[index] < 0)
     return Reading(layout, camera, tags, tuple(measured), missing, scale, _warnings(camera, tags, measured))
 
@@ -98,13 +114,18 @@ def _ink_of(picture: Picture, camera: Camera, layout: SheetLayout, marks: Sequen
     """The ink near where marks are meant, what is printed there left out."""
     ends = layout.to_page_mm(np.array(extent_mm(marks)))
     low, high = layout.ink_page_mm
-    return ink_map(picture, camera, np.maximum(ends.min(axis=0) - _STRAY_MM, low),
-                   np.minimum(ends.max(axis=0) + _STRAY_MM, high),
-                   np.concatenate((layout.bars_page_mm, layout.ticks_page_mm)))
+    return ink_map(
+        picture,
+        camera,
+        np.maximum(ends.min(axis=0) - _STRAY_MM, low),
+        np.minimum(ends.max(axis=0) + _STRAY_MM, high),
+        np.concatenate((layout.bars_page_mm, layout.ticks_page_mm)),
+    )
 
 
-def _touch_downs(ink: InkMap, layout: SheetLayout, marks: Sequence[Mark], places_mm: FloatArray
-                 ) -> list[Contact | None]:
+def _touch_downs(
+    ink: InkMap, layout: SheetLayout, marks: Sequence[Mark], places_mm: FloatArray
+) -> list[Contact | None]:
     """The touch-down of each mark, found at a place (n, 2) on the page; None where it has none, or none is seen."""
     moved = {}
     for index, (mark, place) in enumerate(zip(marks, places_mm, strict=True)):
@@ -113,16 +134,19 @@ def _touch_downs(ink: InkMap, layout: SheetLayout, marks: Sequence[Mark], places
             moved[index] = meant[1:] + place - meant[0]
     found: list[Contact | None] = []
     for index, mark in enumerate(marks):
-        touch = mark.touch_down
-        if touch is None:
+        contact = mark.touch_down
+        if contact is None:
             found.append(None)
             continue
         start, end = moved[index]
         others = np.array([*places_mm, *(line[1] for number, line in moved.items() if number != index)])
         span = touch_down_span(ink, start, end, others)
         along = (end - start) / np.linalg.norm(end - start)
-        found.append(None if span is None else
-                     Contact(height_mm(touch, span), layout.to_sheet_mm(start + np.outer(span, along))))
+        found.append(
+            None
+            if span is None
+            else Contact(height_mm(contact, span), layout.to_sheet_mm(start + np.outer(span, along)))
+        )
     return found
 
 
@@ -131,6 +155,8 @@ def _warnings(camera: Camera, tags: SeenTags, measured: Sequence[MeasuredMark]) 
     per_mm = float(camera.px_per_mm(tags.page_mm.mean(axis=1)).mean())
     off = camera.residual_px / per_mm
     if off > _WAVY_MM:
-        found.append(f"the tags are {off:.2f} mm from where they should be: the paper is not flat, or the picture is "
-                     "blurred; the marks are as uncertain")
+        found.append(
+            f"the tags are {off:.2f} mm from where they should be: the paper is not flat, or the picture is "
+            "blurred; the marks are as uncertain"
+        )
     return tuple(found)

@@ -44,19 +44,26 @@ def find_tags(source: str, picture: Picture, marks: Sequence[Mark]) -> SeenTags:
     if not seen:
         if _detected(np.ascontiguousarray(grey[:, ::-1])):
             raise PhotoError(source, "the picture is mirrored; turn mirroring off in the camera, or flip it back")
-        raise PhotoError(source, "no tags of a calibration sheet are in it; photograph the whole sheet, sharp and in "
-                         "even light")
+        raise PhotoError(
+            source, "no tags of a calibration sheet are in it; photograph the whole sheet, sharp and in even light"
+        )
     layouts = [layout for page in pages_of(tuple(PaperSize)) if (layout := layout_on(page, marks))]
     matches = [_matching(layout, seen) for layout in layouts]
     best = max(range(len(layouts)), key=lambda index: len(matches[index]), default=None)
     places = [] if best is None else matches[best]
     if best is None or len(places) <= len(seen) / 2:
-        raise PhotoError(source, f"it shows another sheet than the one for these marks ({len(places)} of {len(seen)} "
-                         "tags agree); give the photo and the marks of the same `plan pattern`")
+        raise PhotoError(
+            source,
+            f"it shows another sheet than the one for these marks ({len(places)} of {len(seen)} "
+            "tags agree); give the photo and the marks of the same `plan pattern`",
+        )
     layout = layouts[best]
     if len(places) < LEAST_TAGS:
-        raise PhotoError(source, f"only {len(places)} of the sheet's {len(layout.tag_places)} tags can be read, and it "
-                         f"takes {LEAST_TAGS}; photograph the whole sheet, nearer, sharp and in even light")
+        raise PhotoError(
+            source,
+            f"only {len(places)} of the sheet's {len(layout.tag_places)} tags can be read, and it "
+            f"takes {LEAST_TAGS}; photograph the whole sheet, nearer, sharp and in even light",
+        )
     corners = np.array([seen[N_DIGITS * place + layout.digits[place]] for place in places])
     return SeenTags(layout, corners, np.array([layout.tag_corners_page_mm(place) for place in places]))
 
@@ -71,9 +78,11 @@ def _detected(grey: Picture) -> dict[int, FloatArray]:
     corners, ids, _ = cv2.aruco.ArucoDetector(FAMILY, cv2.aruco.DetectorParameters()).detectMarkers(grey)
     numbers = [] if not len(corners) else [int(number) for number in np.ravel(ids)]
     light = np.asarray(cv2.LUT(grey, LINEAR_LIGHT.astype(np.float32)), dtype=np.float32)  # blur moves no edges in it
-    return {number: _refined(light, np.asarray(corner, dtype=np.float32).reshape(4, 2))
-            for number, corner in zip(numbers, corners, strict=True)
-            if numbers.count(number) == 1 and number < N_PLACES * N_DIGITS}
+    return {
+        number: _refined(light, np.asarray(corner, dtype=np.float32).reshape(4, 2))
+        for number, corner in zip(numbers, corners, strict=True)
+        if numbers.count(number) == 1 and number < N_PLACES * N_DIGITS
+    }
 
 
 def _refined(light: NDArray[np.float32], corners: NDArray[np.float32]) -> FloatArray:

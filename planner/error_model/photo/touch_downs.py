@@ -25,8 +25,9 @@ _ROUND = np.sqrt(3) / 4  # of the width: where a round end is half as wide as th
 _SHORTEST_MM = 1.0
 
 
-def touch_down_span(ink: InkMap, start_page_mm: FloatArray, end_page_mm: FloatArray, others_page_mm: FloatArray
-                    ) -> tuple[float, float] | None:
+def touch_down_span(
+    ink: InkMap, start_page_mm: FloatArray, end_page_mm: FloatArray, others_page_mm: FloatArray
+) -> tuple[float, float] | None:
     """Where the middle of the nib was along the line when ink began and ended, mm from where it should begin.
 
     start, end (2,): of the line as it should be, moved as its mark is. others (n, 2): where dots are and other lines
@@ -44,13 +45,13 @@ def touch_down_span(ink: InkMap, start_page_mm: FloatArray, end_page_mm: FloatAr
         return None
     profile = np.where(own, strip, 0.0).sum(axis=1) * _STEP_MM
     inked = np.flatnonzero(own.any(axis=1))
-    width = float(np.median(profile[inked[0]:inked[-1] + 1]))
+    width = float(np.median(profile[inked[0] : inked[-1] + 1]))
     over = np.flatnonzero(profile > width / 2)
     first, last = int(over[0]), int(over[-1])
     if first == 0 or last + 1 == len(s) or _meets(others_page_mm - start_page_mm, along, aside, s[[first, last]]):
         return None
-    start = _crossing(s[first - 1:first + 1], profile[first - 1:first + 1], width / 2)
-    end = _crossing(s[last:last + 2], profile[last:last + 2], width / 2)
+    start = _crossing(s[first - 1 : first + 1], profile[first - 1 : first + 1], width / 2)
+    end = _crossing(s[last : last + 2], profile[last : last + 2], width / 2)
     return start + _ROUND * width, end - _ROUND * width
 
 
@@ -60,10 +61,10 @@ def _meets(others: FloatArray, along: FloatArray, aside: FloatArray, span_mm: Fl
     return bool(np.any((np.abs(t) < _APART_MM) & (s > span_mm[0] - _APART_MM) & (s < span_mm[1] - _END_MM)))
 
 
-def height_mm(touch: TouchDown, span_mm: tuple[float, float]) -> float:
+def height_mm(contact: TouchDown, span_mm: tuple[float, float]) -> float:
     """Height of the tip over the paper where it should just touch it; negative: pressed."""
-    meant = float(np.linalg.norm(np.subtract(touch.end_mm, touch.start_mm)))
-    return touch.slope * (meant - (span_mm[1] - span_mm[0]))
+    meant = float(np.linalg.norm(np.subtract(contact.end_mm, contact.start_mm)))
+    return contact.slope * (meant - (span_mm[1] - span_mm[0]))
 
 
 def _line(strip: Singles, dark: BoolArray, s: FloatArray, t: FloatArray, length: float) -> BoolArray | None:

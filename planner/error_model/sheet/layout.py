@@ -75,7 +75,8 @@ class Page:
     @property
     def name(self) -> str:
         return f"{self.size.upper() if self.size is not PaperSize.LETTER else 'letter'} " + (
-            "landscape" if self.landscape else "portrait")
+            "landscape" if self.landscape else "portrait"
+        )
 
 
 def pages_of(sizes: Sequence[PaperSize]) -> list[Page]:
@@ -123,7 +124,8 @@ class SheetLayout:
         """(4, 2): corners of a tag's black square, from the upper left one, clockwise as seen from above."""
         half = TAG_MM / 2
         corners: FloatArray = self.tag_centre_page_mm(place) + np.array(
-            [[-half, half], [half, half], [half, -half], [-half, -half]])
+            [[-half, half], [half, half], [half, -half], [-half, -half]]
+        )
         return corners
 
     @property
@@ -147,8 +149,9 @@ class SheetLayout:
         return np.full(2, _BAND_MM), np.array(self.page.extent_mm) - _BAND_MM
 
 
-def drawable_mm(wanted_low_mm: Sequence[float], wanted_high_mm: Sequence[float], size: PaperSize = PaperSize.A4
-                ) -> tuple[FloatArray, FloatArray]:
+def drawable_mm(
+    wanted_low_mm: Sequence[float], wanted_high_mm: Sequence[float], size: PaperSize = PaperSize.A4
+) -> tuple[FloatArray, FloatArray]:
     """Least and greatest x and y (2,) of the largest part of a wanted box that marks may lie in on one sheet.
 
     Where the box is too wide for the paper its middle is kept; across, that is where the arm looks.
@@ -179,8 +182,10 @@ def sheet_for(marks: Sequence[Mark], size: PaperSize = PaperSize.A4) -> SheetLay
     if not layouts:
         low, high = extent_mm(marks)
         x, y = max((page.room_mm for page in pages_of([size])), key=lambda room: room[1])
-        raise PlanError(f"the marks are {high[0] - low[0]:.0f} mm along x and {high[1] - low[1]:.0f} mm along y, and a "
-                        f"sheet of {size.upper()} has room for {x:.0f} x {y:.0f} mm or {y:.0f} x {x:.0f} mm")
+        raise PlanError(
+            f"the marks are {high[0] - low[0]:.0f} mm along x and {high[1] - low[1]:.0f} mm along y, and a "
+            f"sheet of {size.upper()} has room for {x:.0f} x {y:.0f} mm or {y:.0f} x {x:.0f} mm"
+        )
     low, high = extent_mm(marks)
     return max(layouts, key=lambda layout: min(np.array(layout.page.room_mm) - (high - low)))
 
@@ -211,10 +216,10 @@ def _identity(page: Page, marks: Sequence[Mark]) -> tuple[tuple[int, ...], str]:
     """Digits for the places of the ring, and a name of six letters, from all that the sheet is for."""
     told = [_FORMAT, page.name]
     for mark in marks:
-        touch = mark.touch_down
-        points = (mark.place_mm,) if touch is None else (mark.place_mm, touch.start_mm, touch.end_mm)
+        contact = mark.touch_down
+        points = (mark.place_mm,) if contact is None else (mark.place_mm, contact.start_mm, contact.end_mm)
         told.append(" ".join(f"{value:.3f}" for point in points for value in point))
     number = int.from_bytes(hashlib.blake2b("\n".join(told).encode(), digest_size=24).digest())
     number, letters = divmod(number, len(_LETTERS) ** 6)
-    digits = tuple(number // N_DIGITS ** place % N_DIGITS for place in range(N_PLACES))
+    digits = tuple(number // N_DIGITS**place % N_DIGITS for place in range(N_PLACES))
     return digits, "".join(_LETTERS[letters // len(_LETTERS) ** place % len(_LETTERS)] for place in range(6))

@@ -84,9 +84,14 @@ def places_mm(marks: Sequence[Mark]) -> FloatArray:
 
 def extent_mm(marks: Sequence[Mark]) -> tuple[FloatArray, FloatArray]:
     """Least and greatest x and y (2,) of the marks and of their touch-down lines."""
-    touches = [mark.touch_down for mark in marks if mark.touch_down]
-    points = np.array([*(mark.place_mm for mark in marks), *(touch.start_mm for touch in touches),
-                       *(touch.end_mm for touch in touches)])
+    contacts = [mark.touch_down for mark in marks if mark.touch_down]
+    points = np.array(
+        [
+            *(mark.place_mm for mark in marks),
+            *(contact.start_mm for contact in contacts),
+            *(contact.end_mm for contact in contacts),
+        ]
+    )
     return points.min(axis=0), points.max(axis=0)
 
 
@@ -97,8 +102,8 @@ def write_marks(target: Path, marks: Sequence[Mark]) -> None:
         rows = csv.writer(cast("IO[str]", file), lineterminator="\n")
         rows.writerow((*COLUMNS, *TOUCH_COLUMNS, *(name for pair in _mode_columns(n_modes) for name in pair)))
         for mark in marks:
-            touch = mark.touch_down
-            line = ("",) * 5 if touch is None else (*touch.start_mm, *touch.end_mm, f"{touch.slope:.6g}")
+            contact = mark.touch_down
+            line = ("",) * 5 if contact is None else (*contact.start_mm, *contact.end_mm, f"{contact.slope:.6g}")
             modes = (value for mode in mark.modes_mm for value in mode)
             rows.writerow((mark.number, f"{mark.t_s:.6f}", *mark.place_mm, *line, *modes))
 
@@ -112,13 +117,17 @@ def read_marks(source: Path) -> tuple[Mark, ...]:
     except OSError as error:
         raise MarksFileError(str(source), None, f"cannot be read: {error.strerror or error}") from error
     except (UnicodeDecodeError, csv.Error) as error:
-        raise MarksFileError(str(source), None, "it is no text file of marks as `plan pattern --marks` writes it"
-                             ) from error
+        raise MarksFileError(
+            str(source), None, "it is no text file of marks as `plan pattern --marks` writes it"
+        ) from error
     header = [name.strip() for name in rows[0][1]] if rows else []
     missing = [name for name in COLUMNS if name not in header]
     if missing:
-        raise MarksFileError(str(source), rows[0][0] if rows else None, f"no column {', '.join(missing)}; it has to be "
-                             "a file of marks as `plan pattern --marks` writes it")
+        raise MarksFileError(
+            str(source),
+            rows[0][0] if rows else None,
+            f"no column {', '.join(missing)}; it has to be a file of marks as `plan pattern --marks` writes it",
+        )
     n_modes = next(k for k in range(len(header) + 1) if not set(_mode_columns(k + 1)[k]) <= set(header))
     marks = [_mark(str(source), line, dict(zip(header, row, strict=False)), n_modes) for line, row in rows[1:]]
     if not marks:
@@ -135,17 +144,21 @@ def _mode_columns(count: int) -> list[tuple[str, str]]:
 
 def _mark(source: str, line: int, cells: dict[str, str], n_modes: int) -> Mark:
     try:
-        touch = [cells.get(name, "").strip() for name in TOUCH_COLUMNS]
-        told = [bool(cell) for cell in touch]
+        contact = [cells.get(name, "").strip() for name in TOUCH_COLUMNS]
+        told = [bool(cell) for cell in contact]
         if any(told) and not all(told):
             raise ValueError("of the five touch-down columns some are empty; fill in all of them, or none")
         x0, y0, x1, y1, slope = (_number(name, cells) if all(told) else 1.0 for name in TOUCH_COLUMNS)
         number = _number("mark", cells)
         if number != int(number) or number < 0:
             raise ValueError(f"mark '{cells['mark']}' is not a whole number from 0")
-        return Mark(int(number), _number("t_s", cells), (_number("x_mm", cells), _number("y_mm", cells)),
-                    TouchDown((x0, y0), (x1, y1), slope) if all(told) else None,
-                    tuple((_number(x, cells), _number(y, cells)) for x, y in _mode_columns(n_modes)))
+        return Mark(
+            int(number),
+            _number("t_s", cells),
+            (_number("x_mm", cells), _number("y_mm", cells)),
+            TouchDown((x0, y0), (x1, y1), slope) if all(told) else None,
+            tuple((_number(x, cells), _number(y, cells)) for x, y in _mode_columns(n_modes)),
+        )
     except ValueError as error:
         raise MarksFileError(source, line, str(error)) from error
 

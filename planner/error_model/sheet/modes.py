@@ -24,8 +24,10 @@ def with_modes(marks: Sequence[Mark], draws_mm: FloatArray) -> list[Mark]:
     m, n, _ = draws_mm.shape
     _, sizes, directions = np.linalg.svd(draws_mm.reshape(m, 2 * n) / np.sqrt(m), full_matrices=False)
     modes = (sizes[:, None] * directions)[:_N_MODES].reshape(-1, n, 2)
-    return [replace(mark, modes_mm=tuple((float(x), float(y)) for x, y in modes[:, index]))
-            for index, mark in enumerate(marks)]
+    return [
+        replace(mark, modes_mm=tuple((float(x), float(y)) for x, y in modes[:, index]))
+        for index, mark in enumerate(marks)
+    ]
 
 
 def modes_mm(marks: Sequence[Mark]) -> FloatArray | None:

@@ -28,8 +28,10 @@ _FONT = "Helvetica"
 _RINGS_MM = (10.0, 20.0, 30.0, BASE_RING_MM)
 _CLEAR_MM = 9.0  # between what is printed and where marks are meant
 _BAR_WORDS = f"must be {BAR_MM:g} mm"
-_HOW = (("Print at 100 %, true size.", "Lay it flat, tape it down,", "base over the rings."),
-        ("Check both bars, then draw.", "Photograph all of it from", "above, sharp, in even light."))
+_HOW = (
+    ("Print at 100 %, true size.", "Lay it flat, tape it down,", "base over the rings."),
+    ("Check both bars, then draw.", "Photograph all of it from", "above, sharp, in even light."),
+)
 
 
 def write_sheet(target: Path, arm_name: str, marks: Sequence[Mark], size: PaperSize = PaperSize.A4) -> SheetLayout:
@@ -73,8 +75,12 @@ class _Page:
                 path.style.fill_color = "#000000"
                 path.style.stroke_color = None
                 for left, top, width, height in _rectangles(modules):
-                    path.rectangle(corners[0, 0] + side * left, self.height - corners[0, 1] + side * top,
-                                   side * width, side * height)
+                    path.rectangle(
+                        corners[0, 0] + side * left,
+                        self.height - corners[0, 1] + side * top,
+                        side * width,
+                        side * height,
+                    )
 
     def bars(self) -> None:
         """The words stand in the gap between the middle tags."""
@@ -113,8 +119,15 @@ class _Page:
         """The paper lies in front of the base: how far."""
         self._line([origin[0], 0.0], [origin[0], 19.0], width=0.2, grey=_QUIET)
         self._arrow(origin + _at(0.0, 19.0 - origin[1]), [0.0, 1.0])
-        for row, words in enumerate(("x: the arm looks", "this way. The axis", f"of its base: {-origin[1]:.1f} mm",
-                                     "below the paper's", "edge, on this line")):
+        for row, words in enumerate(
+            (
+                "x: the arm looks",
+                "this way. The axis",
+                f"of its base: {-origin[1]:.1f} mm",
+                "below the paper's",
+                "edge, on this line",
+            )
+        ):
             self._text(np.array([origin[0] + 1.8, 18.5 - 2.6 * row]), words, 6, grey=_QUIET, room=15.0)
 
     def words(self, arm_name: str) -> None:
@@ -144,8 +157,9 @@ class _Page:
         upper = sorted((each for each in corners if each[:, 1].max() > self.height - 10.0), key=lambda each: each[0, 0])
         return [(left[:, 0].max() + 3.0, right[:, 0].min() - 3.0) for left, right in pairwise(upper)]
 
-    def _line(self, start: Sequence[float] | FloatArray, end: Sequence[float] | FloatArray, *, width: float,
-              grey: int = _INK) -> None:
+    def _line(
+        self, start: Sequence[float] | FloatArray, end: Sequence[float] | FloatArray, *, width: float, grey: int = _INK
+    ) -> None:
         self.pdf.set_draw_color(grey)
         self.pdf.set_line_width(width)
         self.pdf.line(start[0], self.height - start[1], end[0], self.height - end[1])
@@ -156,8 +170,17 @@ class _Page:
         self.pdf.set_fill_color(_QUIET)
         self.pdf.polygon([(u, self.height - v) for u, v in corners], style="F")
 
-    def _text(self, place: FloatArray, words: str, points: float, *, align: str = "L", bold: bool = False,
-              grey: int = _INK, room: float = math.inf) -> None:
+    def _text(
+        self,
+        place: FloatArray,
+        words: str,
+        points: float,
+        *,
+        align: str = "L",
+        bold: bool = False,
+        grey: int = _INK,
+        room: float = math.inf,
+    ) -> None:
         """Words on a line that starts, or has its middle, at a place, smaller where they need more room than there
         is."""
         self.pdf.set_font(_FONT, "B" if bold else "", points)

@@ -42,9 +42,18 @@ class Drawn:
         return drawn_sheet(self.pdf, self.layout.origin_page_mm, self.ink, printed_at=printed_at)
 
 
-def draw(folder: Path, marks: Sequence[Mark], seed: int, *, scatter_mm: float = 0.7, height_sd_mm: float = 1.5,
-         colour: tuple[float, float, float] = BLACK_INK, without: Sequence[int] = (), dirt: int = 0,
-         size: PaperSize = PaperSize.A4) -> Drawn:
+def draw(
+    folder: Path,
+    marks: Sequence[Mark],
+    seed: int,
+    *,
+    scatter_mm: float = 0.7,
+    height_sd_mm: float = 1.5,
+    colour: tuple[float, float, float] = BLACK_INK,
+    without: Sequence[int] = (),
+    dirt: int = 0,
+    size: PaperSize = PaperSize.A4,
+) -> Drawn:
     """Marks 4 to 8 mm off by a smooth warp, and a scatter beside it; dots of 0.4 to 1 mm and lines of 0.4 mm.
 
     without: marks that left no dot. dirt: specks on the paper.

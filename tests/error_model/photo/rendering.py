@@ -76,8 +76,14 @@ class Camera:
     quality: int = 88
 
 
-def drawn_sheet(pdf: Path, origin_page_mm: tuple[float, float], ink: Sequence[Ink], *, px_per_mm: float = 12.0,
-                printed_at: float = 1.0) -> Sheet:
+def drawn_sheet(
+    pdf: Path,
+    origin_page_mm: tuple[float, float],
+    ink: Sequence[Ink],
+    *,
+    px_per_mm: float = 12.0,
+    printed_at: float = 1.0,
+) -> Sheet:
     """A printed sheet with ink on it. origin_page_mm: where the sheet's frame is, from the page's lower left corner.
     printed_at: the printer's scale, about the page's middle; ink lies where it is told by the frame as printed."""
     with pypdfium2.PdfDocument(pdf) as document:
@@ -87,8 +93,10 @@ def drawn_sheet(pdf: Path, origin_page_mm: tuple[float, float], ink: Sequence[In
     rows, columns = reflectance.shape[:2]
     if printed_at != 1.0:
         about = cv2.getRotationMatrix2D((columns / 2, rows / 2), 0, printed_at)
-        reflectance = np.asarray(cv2.warpAffine(reflectance, about, (columns, rows), flags=cv2.INTER_AREA,
-                                                borderValue=(_PAPER,) * 3), dtype=np.float32)
+        reflectance = np.asarray(
+            cv2.warpAffine(reflectance, about, (columns, rows), flags=cv2.INTER_AREA, borderValue=(_PAPER,) * 3),
+            dtype=np.float32,
+        )
     middle = np.array([columns, rows]) / 2
     origin = np.array([origin_page_mm[0] * px_per_mm, rows - origin_page_mm[1] * px_per_mm])
     origin = middle + printed_at * (origin - middle)
@@ -107,19 +115,21 @@ def _lay(reflectance: Singles, points: Floats, widths: Floats, line: Ink) -> Non
     if np.any(high <= low):
         return
     within = np.full(tuple((high - low)[::-1]), -np.inf)
-    for start, end, first, last in zip(points, [*points[1:], points[-1]], widths, [*widths[1:], widths[-1]],
-                                       strict=True):
+    for start, end, first, last in zip(
+        points, [*points[1:], points[-1]], widths, [*widths[1:], widths[-1]], strict=True
+    ):
         near_low = np.clip(np.floor(np.minimum(start, end) - reach).astype(int), low, high)
         near_high = np.clip(np.ceil(np.maximum(start, end) + reach).astype(int), low, high)
-        grid = np.stack(np.meshgrid(np.arange(near_low[0], near_high[0]) + 0.5,
-                                    np.arange(near_low[1], near_high[1]) + 0.5), axis=-1)
+        grid = np.stack(
+            np.meshgrid(np.arange(near_low[0], near_high[0]) + 0.5, np.arange(near_low[1], near_high[1]) + 0.5), axis=-1
+        )
         along = end - start
         share = np.clip(((grid - start) @ along) / max(along @ along, 1e-12), 0.0, 1.0)
         distance = np.linalg.norm(grid - start - share[..., None] * along, axis=-1)
-        part = within[near_low[1] - low[1]:near_high[1] - low[1], near_low[0] - low[0]:near_high[0] - low[0]]
+        part = within[near_low[1] - low[1] : near_high[1] - low[1], near_low[0] - low[0] : near_high[0] - low[0]]
         np.maximum(part, (first + share * (last - first)) / 2 - distance, out=part)
     cover = (line.density * np.clip(within + 0.5, 0.0, 1.0))[..., None].astype(np.float32)
-    part = reflectance[low[1]:high[1], low[0]:high[0]]
+    part = reflectance[low[1] : high[1], low[0] : high[0]]
     part *= 1 - cover * (1 - np.array(line.colour, dtype=np.float32))
 
 
@@ -131,9 +141,14 @@ def photograph(sheet: Sheet, camera: Camera, seed: int = 0) -> Pixels:
     paper = cv2.GaussianBlur(sheet.reflectance, (0, 0), 0.5)
     finer = 2
     u, v, _ = _seen(camera, to_page, finer)
-    scene = cv2.remap(paper, u * np.float32(sheet.px_per_mm) - np.float32(0.5),
-                      v * np.float32(sheet.px_per_mm) - np.float32(0.5), cv2.INTER_LINEAR,
-                      borderMode=cv2.BORDER_CONSTANT, borderValue=_TABLE)
+    scene = cv2.remap(
+        paper,
+        u * np.float32(sheet.px_per_mm) - np.float32(0.5),
+        v * np.float32(sheet.px_per_mm) - np.float32(0.5),
+        cv2.INTER_LINEAR,
+        borderMode=cv2.BORDER_CONSTANT,
+        borderValue=_TABLE,
+    )
     scene = cv2.resize(scene, (camera.width, camera.height), interpolation=cv2.INTER_AREA)
     u, v, radius2 = _seen(camera, to_page, 0.25)  # light and grain are coarse
     light = _light(u / page[0], v / page[1], camera, rng) * (1 - camera.vignette * radius2)
@@ -171,8 +186,11 @@ def _seen(camera: Camera, to_page: Floats, finer: float) -> tuple[Singles, Singl
     ray_y = (y * (grown + 2 * p2 * x) + p1 * (r2 + 2 * y * y)) / focal
     m = to_page.astype(np.float32)
     depth = m[2, 0] * ray_x + m[2, 1] * ray_y + m[2, 2]
-    return (m[0, 0] * ray_x + m[0, 1] * ray_y + m[0, 2]) / depth, (
-        m[1, 0] * ray_x + m[1, 1] * ray_y + m[1, 2]) / depth, r2
+    return (
+        (m[0, 0] * ray_x + m[0, 1] * ray_y + m[0, 2]) / depth,
+        (m[1, 0] * ray_x + m[1, 1] * ray_y + m[1, 2]) / depth,
+        r2,
+    )
 
 
 def _scene_to_picture(page_mm: tuple[float, float], camera: Camera) -> Floats:
@@ -205,8 +223,9 @@ def _grain(u: Singles, v: Singles, rng: np.random.Generator) -> Singles:
     """Of wood, along u: shares of its light."""
     coarse = cv2.GaussianBlur(rng.normal(size=(256, 256)).astype(np.float32), (0, 0), sigmaX=12, sigmaY=0.9)
     coarse = np.clip(1 + 0.18 * coarse / coarse.std(), 0.3, 2).astype(np.float32)
-    return cv2.remap(coarse, np.mod(u, 250).astype(np.float32), np.mod(v * 1.5, 250).astype(np.float32),
-                     cv2.INTER_LINEAR)
+    return cv2.remap(
+        coarse, np.mod(u, 250).astype(np.float32), np.mod(v * 1.5, 250).astype(np.float32), cv2.INTER_LINEAR
+    )
 
 
 def _light(across: Singles, along: Singles, camera: Camera, rng: np.random.Generator) -> Singles:
@@ -227,8 +246,7 @@ def _developed(scene: Singles, noise: float, quality: int, rng: np.random.Genera
     curve = np.linspace(0, 1, 4096)
     curve = np.where(curve <= 0.0031308, 12.92 * curve, 1.055 * curve ** (1 / 2.4) - 0.055)
     steps = np.rint(np.clip(scene[..., ::-1], 0, 1) * np.float32(4095)).astype(np.uint16)
-    good, data = cv2.imencode(".jpg", np.rint(255 * curve).astype(np.uint8)[steps],
-                              [cv2.IMWRITE_JPEG_QUALITY, quality])
+    good, data = cv2.imencode(".jpg", np.rint(255 * curve).astype(np.uint8)[steps], [cv2.IMWRITE_JPEG_QUALITY, quality])
     assert good
     decoded = cv2.imdecode(data, cv2.IMREAD_COLOR)
     assert decoded is not None

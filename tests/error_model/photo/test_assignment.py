@@ -22,14 +22,13 @@ def crowd(rng: np.random.Generator) -> np.ndarray:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_marks_closer_than_they_are_off_are_told_apart_by_the_modes(seed: int) -> None:
-    """Neighbours are moved unlike, as by an arm that draws them in different postures."""
+    """Neighbours are moved unlike, as by an arm that draws them in different configurations."""
     rng = np.random.default_rng(seed)
     meant = crowd(rng)
     sizes = 4.0 * 0.7 ** np.arange(10)
     axes = np.linalg.qr(rng.normal(size=(2 * len(meant), len(sizes))))[0].T * np.sqrt(len(meant))
     draws = (rng.normal(size=(90, len(sizes))) * sizes) @ axes
-    marks = with_modes([Mark(k, float(k), tuple(place)) for k, place in enumerate(meant)],
-                       draws.reshape(90, -1, 2))
+    marks = with_modes([Mark(k, float(k), tuple(place)) for k, place in enumerate(meant)], draws.reshape(90, -1, 2))
     off = ((rng.normal(size=len(sizes)) * sizes) @ axes).reshape(-1, 2) + rng.normal(0, 0.3, meant.shape)
     order = rng.permutation(len(meant))
     dots, ink = (meant + off)[order], rng.uniform(0.15, 0.6, len(meant))

@@ -48,8 +48,9 @@ def refused(capfd: pytest.CaptureFixture[str], *arguments: str) -> str:
     return captured.err
 
 
-def test_marks_are_written_and_what_is_missing_is_named(folder: Path, drawn: Drawn, capfd: pytest.CaptureFixture[str]
-                                                       ) -> None:
+def test_marks_are_written_and_what_is_missing_is_named(
+    folder: Path, drawn: Drawn, capfd: pytest.CaptureFixture[str]
+) -> None:
     assert main(["measure", "photo.png", "--marks", "marks.csv", "-o", "measured.csv", "--picture", "reading.png"]) == 0
     said = capfd.readouterr()
     assert said.out == ""
@@ -71,8 +72,9 @@ def test_bars_scale_the_places_and_are_not_asked_for_again(folder: Path, capfd: 
     for name, options in (("one", []), ("two", ["--bar", "145.5mm"]), ("three", ["--bar", "150,145.5"])):
         assert main(["measure", "photo.png", "--marks", "marks.csv", "-o", f"{name}.csv", *options]) == 0
         assert ("ruler" in capfd.readouterr().err) == (not options)
-    one, two, three = (np.genfromtxt(f"{name}.csv", delimiter=",", skip_header=1)[:, 1:3]
-                       for name in ("one", "two", "three"))
+    one, two, three = (
+        np.genfromtxt(f"{name}.csv", delimiter=",", skip_header=1)[:, 1:3] for name in ("one", "two", "three")
+    )
     np.testing.assert_allclose(two, 0.97 * one, atol=1e-3)
     np.testing.assert_allclose(three, one * [0.97, 1.0], atol=1e-3)
 
@@ -102,8 +104,9 @@ SPOILED = {
 
 
 @pytest.mark.parametrize("name", SPOILED)
-def test_a_photo_that_will_not_do_is_refused(name: str, folder: Path, photo: Pixels,
-                                             capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_photo_that_will_not_do_is_refused(
+    name: str, folder: Path, photo: Pixels, capfd: pytest.CaptureFixture[str]
+) -> None:
     spoil, said = SPOILED[name]
     (folder / "spoiled.png").write_bytes(spoil(photo))
     assert said in refused(capfd, "spoiled.png")
@@ -114,23 +117,28 @@ def test_a_photo_of_another_sheet_is_refused(folder: Path, drawn: Drawn, capfd: 
     assert "another sheet" in refused(capfd, "photo.png")
 
 
-def test_a_sheet_before_it_is_drawn_on_is_refused(folder: Path, drawn: Drawn, capfd: pytest.CaptureFixture[str]
-                                                  ) -> None:
+def test_a_sheet_before_it_is_drawn_on_is_refused(
+    folder: Path, drawn: Drawn, capfd: pytest.CaptureFixture[str]
+) -> None:
     sheet = drawn_sheet(drawn.pdf, drawn.layout.origin_page_mm, [])
     cv2.imwrite("photo.png", photograph(sheet, Camera(noise=0.005), 1))
     assert "no marks" in refused(capfd, "photo.png")
 
 
-@pytest.mark.parametrize(("options", "said"), [
-    (["--bar", "97"], "not near 150 mm"),
-    (["--bar", "150,150,150"], "one length, or two"),
-    (["--picture", "reading.txt"], ".png, .svg, .pdf"),
-    (["--picture", "measured.csv"], "the same file"),
-    (["--picture", "nowhere/reading.png"], "no folder"),
-    (["--picture", "photo.png"], "is being read"),
-])
-def test_options_that_mean_nothing_are_refused(options: list[str], said: str, folder: Path,
-                                               capfd: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--bar", "97"], "not near 150 mm"),
+        (["--bar", "150,150,150"], "one length, or two"),
+        (["--picture", "reading.txt"], ".png, .svg, .pdf"),
+        (["--picture", "measured.csv"], "the same file"),
+        (["--picture", "nowhere/reading.png"], "no folder"),
+        (["--picture", "photo.png"], "is being read"),
+    ],
+)
+def test_options_that_mean_nothing_are_refused(
+    options: list[str], said: str, folder: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     assert said in refused(capfd, "photo.png", *options)
 
 
@@ -140,8 +148,9 @@ def test_files_that_are_not_there_or_are_no_marks(folder: Path, capfd: pytest.Ca
     assert "no column mark" in refused(capfd, "photo.png")
 
 
-def test_without_opencv_the_extra_is_named(folder: Path, capfd: pytest.CaptureFixture[str],
-                                           monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_opencv_the_extra_is_named(
+    folder: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     for name in [name for name in sys.modules if name.startswith(("planner.error_model", "planner.plots.reading"))]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "cv2", None)

@@ -32,8 +32,13 @@ def place_errors_mm(drawn: Drawn, reading: Reading) -> np.ndarray:
 
 def height_errors_mm(drawn: Drawn, reading: Reading) -> np.ndarray:
     index = {mark.number: k for k, mark in enumerate(drawn.marks)}
-    return np.array([each.contact.height_mm - drawn.heights_mm[index[each.mark.number]]
-                     for each in reading.measured if each.contact])
+    return np.array(
+        [
+            each.contact.height_mm - drawn.heights_mm[index[each.mark.number]]
+            for each in reading.measured
+            if each.contact
+        ]
+    )
 
 
 def rms(values: np.ndarray) -> float:

@@ -44,12 +44,13 @@ def test_the_page_is_as_the_layout_says(name: str, tmp_path: Path) -> None:
     assert set(seen) == set(layout.tag_ids)
     for place, number in zip(layout.tag_places, layout.tag_ids, strict=True):
         middle = seen[number].reshape(4, 2).mean(axis=0) + 0.5
-        np.testing.assert_allclose([middle[0] / PX_PER_MM, height - middle[1] / PX_PER_MM],
-                                   layout.tag_centre_page_mm(place), atol=0.05)
+        np.testing.assert_allclose(
+            [middle[0] / PX_PER_MM, height - middle[1] / PX_PER_MM], layout.tag_centre_page_mm(place), atol=0.05
+        )
     for mark in marks:
         u, v = layout.to_page_mm(np.array(mark.place_mm))
         row, column = round((height - v) * PX_PER_MM), round(u * PX_PER_MM)
-        assert page[row - 40:row + 40, column - 40:column + 40].min() == 255, "nothing is printed round a mark"
+        assert page[row - 40 : row + 40, column - 40 : column + 40].min() == 255, "nothing is printed round a mark"
 
 
 def test_the_bars_are_150_mm_long_to_a_ruler(tmp_path: Path) -> None:
@@ -57,7 +58,7 @@ def test_the_bars_are_150_mm_long_to_a_ruler(tmp_path: Path) -> None:
     page = grey_page(tmp_path / "sheet.pdf")
     (start, end), _ = layout.bars_page_mm
     row = round((layout.page.extent_mm[1] - start[1] + 1.0) * PX_PER_MM)  # through the ticks
-    dark = np.flatnonzero(page[row, round((start[0] - 2) * PX_PER_MM):round((end[0] + 2) * PX_PER_MM)] < 128)
+    dark = np.flatnonzero(page[row, round((start[0] - 2) * PX_PER_MM) : round((end[0] + 2) * PX_PER_MM)] < 128)
     first, last = dark[dark < 100].mean(), dark[dark > 100].mean()
     assert (last - first) / PX_PER_MM == pytest.approx(150.0, abs=0.15)
 

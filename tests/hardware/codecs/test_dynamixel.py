@@ -28,13 +28,15 @@ def test_examples_of_the_protocols_description() -> None:
     assert dynamixel.ping(1) == bytes.fromhex("FF FF FD 00 01 03 00 01 19 4E")
     assert dynamixel.read(1, 132, 4) == bytes.fromhex("FF FF FD 00 01 07 00 02 84 00 04 00 1D 15")
     assert dynamixel.sync_write(116, {1: dynamixel.word(150), 2: dynamixel.word(170)}) == bytes.fromhex(
-        "FF FF FD 00 FE 11 00 83 74 00 04 00 01 96 00 00 00 02 AA 00 00 00 82 87")
+        "FF FF FD 00 FE 11 00 83 74 00 04 00 01 96 00 00 00 02 AA 00 00 00 82 87"
+    )
 
 
 @settings(max_examples=40)
 @given(servo=SERVOS, register=st.integers(0, 200), size=st.integers(1, 8), data=DATA)
 def test_instructions_are_those_of_the_vendors_sdk(
-        servo: int, register: int, size: int, data: dict[int, bytes]) -> None:
+    servo: int, register: int, size: int, data: dict[int, bytes]
+) -> None:
     port, handler = SdkPort(), sdk.Protocol2PacketHandler()
     handler.readTx(port, servo, register, size)
     assert port.sent == dynamixel.read(servo, register, size)
@@ -59,10 +61,13 @@ def test_stuffing_is_that_of_the_vendors_sdk(data: bytes) -> None:
     assert b"\xff\xff\xfd\x00" not in dynamixel.sync_write(116, {7: data})[4:]
 
 
-@given(noise=NOISE, servo=SERVOS, data=st.lists(st.sampled_from([0, 1, 0xFD, 0xFF]), max_size=8).map(bytes),
-       cut=st.integers(0, 11))
-def test_an_answer_is_found_behind_noise_and_only_when_whole(
-        noise: bytes, servo: int, data: bytes, cut: int) -> None:
+@given(
+    noise=NOISE,
+    servo=SERVOS,
+    data=st.lists(st.sampled_from([0, 1, 0xFD, 0xFF]), max_size=8).map(bytes),
+    cut=st.integers(0, 11),
+)
+def test_an_answer_is_found_behind_noise_and_only_when_whole(noise: bytes, servo: int, data: bytes, cut: int) -> None:
     packet = status_packet(servo, 0, data)
     received = bytearray(packet[:cut])
     if cut < len(packet):
@@ -86,8 +91,10 @@ def test_a_position_comes_back(count: int) -> None:
 def test_faults_are_told_in_words_and_answers_agree_with_the_vendors_sdk() -> None:
     packet = status_packet(3, 0x87, dynamixel.word(2048))
     assert dynamixel.take_status(bytearray(packet)) == Status(
-        3, ("a register that is closed to it now", "a hardware fault: too hot, overloaded or wrong voltage"),
-        dynamixel.word(2048))
+        3,
+        ("a register that is closed to it now", "a hardware fault: too hot, overloaded or wrong voltage"),
+        dynamixel.word(2048),
+    )
     assert sdk.Protocol2PacketHandler().read4ByteTxRx(SdkPort(packet), 3, 132) == (2048, 0, 0x87)
 
 

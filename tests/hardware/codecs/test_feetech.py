@@ -32,7 +32,8 @@ def test_examples_of_the_protocols_description() -> None:
 @settings(max_examples=40)
 @given(servo=SERVOS, register=st.integers(0, 80), size=st.integers(1, 8), data=DATA)
 def test_instructions_are_those_of_the_vendors_sdk(
-        servo: int, register: int, size: int, data: dict[int, bytes]) -> None:
+    servo: int, register: int, size: int, data: dict[int, bytes]
+) -> None:
     port = SdkPort()
     handler = sdk.protocol_packet_handler(port, 0)
     handler.readTx(servo, register, size)
@@ -61,8 +62,7 @@ def test_a_position_beyond_the_word_is_no_word() -> None:
 
 
 @given(noise=NOISE, servo=SERVOS, data=st.binary(max_size=6), cut=st.integers(0, 11))
-def test_an_answer_is_found_behind_noise_and_only_when_whole(
-        noise: bytes, servo: int, data: bytes, cut: int) -> None:
+def test_an_answer_is_found_behind_noise_and_only_when_whole(noise: bytes, servo: int, data: bytes, cut: int) -> None:
     packet = status_packet(servo, 0, data)
     received = bytearray(packet[:cut])
     if cut < len(packet):
@@ -80,8 +80,9 @@ def test_an_answer_is_found_behind_noise_and_only_when_whole(
 
 def test_faults_are_told_in_words_and_answers_agree_with_the_vendors_sdk() -> None:
     packet = status_packet(3, 0b100101, b"\x10\x08")
-    assert feetech.take_status(bytearray(packet)) == Status(3, ("wrong voltage", "overheated", "overloaded"),
-                                                            b"\x10\x08")
+    assert feetech.take_status(bytearray(packet)) == Status(
+        3, ("wrong voltage", "overheated", "overloaded"), b"\x10\x08"
+    )
     position, result, error = sdk.sms_sts(SdkPort(packet)).ReadPos(3)
     assert (position, result, error) == (feetech.count(b"\x10\x08"), 0, 0b100101)
 

@@ -19,7 +19,8 @@ def test_examples_of_the_users_guide() -> None:
 
 @given(channel=st.integers(0, 31), pulse_us=st.floats(0, 4095.8))
 def test_only_the_first_byte_has_its_top_bit_set_and_the_pulse_is_the_nearest_step(
-        channel: int, pulse_us: float) -> None:
+    channel: int, pulse_us: float
+) -> None:
     command = maestro.with_crc(maestro.set_target(channel, pulse_us))
     assert [byte >> 7 for byte in command] == [1, 0, 0, 0, 0]
     low, high = command[2:4]
@@ -43,4 +44,7 @@ def test_replies() -> None:
     assert maestro.position_us(bytes.fromhex("70 17")) == 1500.0
     assert maestro.errors(b"\x00\x00") == []
     assert maestro.errors(bytes.fromhex("18 01")) == [
-        "a wrong CRC", "a command that it does not know", "an error of its script's counter"]
+        "a wrong CRC",
+        "a command that it does not know",
+        "an error of its script's counter",
+    ]

@@ -56,11 +56,11 @@ class Bench:
         self.received += message
         before, self.taken = self.taken, len(self.received)
         if before < self.resets_after <= self.taken and self.anew is not None:
-            self._hear(message[:round(self.resets_after) - before])
+            self._hear(message[: round(self.resets_after) - before])
             self.model, self._deaf_until_s = self.anew(), self._now_s + self.boot_s
             self.models.append(self.model)
             message = b""
-        self._hear(message[:max(min(len(message), round(min(self.dies_after, self.taken)) - before), 0)])
+        self._hear(message[: max(min(len(message), round(min(self.dies_after, self.taken)) - before), 0)])
 
     def read(self, size: int, timeout_s: float = 0.0) -> bytes:
         if not self._come() and timeout_s:

@@ -53,7 +53,7 @@ class BusModel(ABC):
         else:
             assert code == 0x02, f"instruction {code}"
             start, size = self._read_parts(parameters)
-            answer = self._status(servo, bytes(self.memory[servo][start:start + size]))
+            answer = self._status(servo, bytes(self.memory[servo][start : start + size]))
         if self.noise:
             self.noise -= 1
             answer = answer[:-1] + bytes((answer[-1] ^ 0x10,))
@@ -63,10 +63,10 @@ class BusModel(ABC):
         assert len(data) % (1 + size) == 0
         goals = {}
         for k in range(0, len(data), 1 + size):
-            servo, content = data[k], data[k + 1:k + 1 + size]
+            servo, content = data[k], data[k + 1 : k + 1 + size]
             assert servo in self.memory
             assert start in (self.TORQUE, self.GOAL, *self.RAMPS), f"register {start}"
-            self.memory[servo][start:start + size] = content
+            self.memory[servo][start : start + size] = content
             if start == self.GOAL:
                 assert size == self.WORD
                 goals[servo] = self._load(servo, self.GOAL)
@@ -75,7 +75,7 @@ class BusModel(ABC):
         for servo, memory in self.memory.items():
             if memory[self.TORQUE] == 1 and servo not in self.stuck:
                 assert not any(memory[ramp] for ramp in self.RAMPS), "moved with a ramp of the servo's own"
-                memory[self.PRESENT:self.PRESENT + self.WORD] = memory[self.GOAL:self.GOAL + self.WORD]
+                memory[self.PRESENT : self.PRESENT + self.WORD] = memory[self.GOAL : self.GOAL + self.WORD]
 
     @abstractmethod
     def _take(self) -> tuple[int, int, bytes] | None:
@@ -122,12 +122,12 @@ class FeetechModel(BusModel):
         return parameters[0], parameters[1], parameters[2:]
 
     def _load(self, servo: int, register: int) -> int:
-        value = int.from_bytes(self.memory[servo][register:register + 2], "little")
+        value = int.from_bytes(self.memory[servo][register : register + 2], "little")
         return 32768 - value if value > 32768 else value
 
     def put(self, servo: int, register: int, value: int) -> None:
         stored = value if value >= 0 else 32768 - value
-        self.memory[servo][register:register + 2] = stored.to_bytes(2, "little")
+        self.memory[servo][register : register + 2] = stored.to_bytes(2, "little")
 
 
 class DynamixelModel(BusModel):
@@ -167,7 +167,7 @@ class DynamixelModel(BusModel):
         return (*self._read_parts(parameters[:4]), parameters[4:])
 
     def _load(self, servo: int, register: int) -> int:
-        return int.from_bytes(self.memory[servo][register:register + 4], "little", signed=True)
+        return int.from_bytes(self.memory[servo][register : register + 4], "little", signed=True)
 
     def put(self, servo: int, register: int, value: int) -> None:
-        self.memory[servo][register:register + 4] = value.to_bytes(4, "little", signed=True)
+        self.memory[servo][register : register + 4] = value.to_bytes(4, "little", signed=True)

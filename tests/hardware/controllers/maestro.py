@@ -40,7 +40,7 @@ class MaestroModel:
             assert all(byte < 0x80 for byte in command[1:]), f"data with the top bit set: {command.hex()}"
             if self._crc:
                 assert command[-1] == crc7(command[:-1]), f"wrong CRC: {command.hex()}"
-            answer += self._carry_out(*command[:size - self._crc])
+            answer += self._carry_out(*command[: size - self._crc])
         return b"" if self.deaf else answer
 
     def _carry_out(self, code: int, channel: int = 0, low: int = 0, high: int = 0) -> bytes:

@@ -21,11 +21,18 @@ FIRMWARE = Path(__file__).parents[3] / "hardware" / "firmware"
 CYCLES_PER_S = 16_000_000
 _NO_CHANNEL = 255
 _LONGEST_PULSE_CYCLES = 2601 * 16
-_MISSING = [tool for tool, there in {
-    "gcc-avr": shutil.which("avr-gcc"), "gcc": shutil.which("gcc"), "make": shutil.which("make"),
-    "avr-libc": any(Path(base, "avr/io.h").exists() for base in ("/usr/lib/avr/include", "/usr/avr/include")),
-    "libsimavr-dev": Path("/usr/include/simavr/sim_avr.h").exists(),
-    "libelf-dev": Path("/usr/include/libelf.h").exists()}.items() if not there]
+_MISSING = [
+    tool
+    for tool, there in {
+        "gcc-avr": shutil.which("avr-gcc"),
+        "gcc": shutil.which("gcc"),
+        "make": shutil.which("make"),
+        "avr-libc": any(Path(base, "avr/io.h").exists() for base in ("/usr/lib/avr/include", "/usr/avr/include")),
+        "libsimavr-dev": Path("/usr/include/simavr/sim_avr.h").exists(),
+        "libelf-dev": Path("/usr/include/libelf.h").exists(),
+    }.items()
+    if not there
+]
 
 
 def require_tools() -> None:
@@ -42,8 +49,21 @@ def build(folder: Path) -> Build:
     require_tools()
     subprocess.run(["make", "-s", "-C", FIRMWARE, f"BUILD={folder}"], check=True, capture_output=True)
     emulator = folder / "emulator"
-    subprocess.run(["gcc", "-std=gnu11", "-O2", "-o", emulator, Path(__file__).with_name("emulator.c"),
-                    "-lsimavr", "-lelf", "-lutil"], check=True, capture_output=True)
+    subprocess.run(
+        [
+            "gcc",
+            "-std=gnu11",
+            "-O2",
+            "-o",
+            emulator,
+            Path(__file__).with_name("emulator.c"),
+            "-lsimavr",
+            "-lelf",
+            "-lutil",
+        ],
+        check=True,
+        capture_output=True,
+    )
     return Build(folder / "firmware.elf", emulator)
 
 
@@ -63,8 +83,9 @@ class Faults:
     seed: int = 1
 
     def options(self) -> list[str]:
-        return [part for name in ("flip", "drop", "duplicate", "seed")
-                for part in (f"--{name}", str(getattr(self, name)))]
+        return [
+            part for name in ("flip", "drop", "duplicate", "seed") for part in (f"--{name}", str(getattr(self, name)))
+        ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,8 +153,9 @@ class Emulator:
 def on_pty(built: Build, folder: Path, faults: Faults = Faults()) -> tuple[Emulator, Path]:
     """A controller in real time, and the device name of its line."""
     pty, pins = folder / "tty", folder / "pins.bin"
-    process = subprocess.Popen([built.emulator, built.firmware, pins, "--pty", pty, *faults.options()],
-                               stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        [built.emulator, built.firmware, pins, "--pty", pty, *faults.options()], stderr=subprocess.PIPE
+    )
     deadline_s = time.monotonic() + 10
     while not pty.exists() and time.monotonic() < deadline_s and process.poll() is None:
         time.sleep(0.01)
@@ -185,7 +207,10 @@ class LockStep:
 
 
 def in_lock_step(built: Build, folder: Path, faults: Faults = Faults()) -> LockStep:
-    process = subprocess.Popen([built.emulator, built.firmware, folder / "pins.bin", "--lockstep", *faults.options()],
-                               stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        [built.emulator, built.firmware, folder / "pins.bin", "--lockstep", *faults.options()],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
     return LockStep(Emulator(process, folder / "pins.bin"))
-

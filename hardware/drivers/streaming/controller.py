@@ -1,0 +1,60 @@
+"""What a controller without a queue has to be able to do, for the one driver of all of them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+from hardware.clock import Clock
+from hardware.compensation.servo_values import Calibration
+from hardware.port import Port
+from planner.arrays import FloatArray
+
+
+class Question(NamedTuple):
+    """A message that asks how a controller fares, and how many bytes its answer has."""
+
+    message: bytes
+    answer_size: int
+
+
+class Controller(Protocol):
+    """Moves servos at once to what it is told. Values are (n_joints,), in the calibration's unit and ranges.
+
+    Methods that are handed a port may raise HardwareError.
+    """
+
+    usual_baud: int
+    calibration: Calibration
+
+    witnesses: int
+    """How many there are that each answer for themselves alone: one board, or every servo of a bus."""
+
+    forgets_resets: bool
+    """Whether nothing tells of a reset any more once the next set point has come. Then a question has to go ahead of
+    the set point, and an answer that fails to come may be all that is ever seen of a reset. Where a reset stays
+    visible, questions go behind, so that nothing else is on a shared line while the answer comes, and noise may
+    take a few of them."""
+
+    def attach(self, port: Port, values: FloatArray, clock: Clock) -> FloatArray:
+        """Make sure that everything answers, and power the servos; where they then stand.
+
+        Those that cannot tell where they are are sent to `values`, one after another.
+        """
+
+    def set_point(self, values: FloatArray, duration_s: float) -> bytes:
+        """The message that sends the servos to `values`, within `duration_s` where the controller can time it."""
+
+    def confirm(self, port: Port, values: FloatArray, clock: Clock) -> None:
+        """Return once the servos stand at `values`, as far as the controller knows; HardwareError if they do not."""
+
+    def halt(self, port: Port) -> None:
+        """The servos hold where they are."""
+
+    def question(self, witness: int) -> Question:
+        """What asks witness 0, 1, ... how it fares."""
+
+    def take_answer(self, witness: int, received: bytearray) -> bool:
+        """Whether the whole answer to `question(witness)` has come; it is taken from `received`.
+
+        Errors: HardwareError where the answer is a fault, or tells of a reset.
+        """

@@ -1,0 +1,176 @@
+"""Symbolic kinematics of any arm, built by CasADi from its DH table and couplings.
+
+Everything is a function of the independent joints: mimic joints are substituted, so a configuration cannot leave
+its coupling. Compiled functions are evaluated over whole arrays of configurations at once.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property, lru_cache
+
+import casadi
+import numpy as np
+
+from planner.arms.arm import Arm, JointKind, PenHold
+from planner.arrays import FloatArray
+from planner.kinematics.compiled import CompiledFunction
+
+_PROBES = 32
+
+
+class Kinematics:
+    """Forward kinematics, Jacobians and the task of one arm, as functions of its independent joints.
+
+    The task is what a configuration has to meet at a pen target: the tip's place (3 rows, mm) and, where the
+    tool axis has to point down, its horizontal components (which have to be zero), seen from the turning base.
+    An axis that stays in a plane with the base axis by construction has only one of them.
+    """
+
+    def __init__(self, arm: Arm) -> None:
+        self.arm = arm
+        matrix, constant = arm.coupling_matrix
+        self.independent = casadi.SX.sym("q", len(arm.independent_joints))
+        self.joints = casadi.sparsify(casadi.SX(matrix)) @ self.independent + constant
+        self.frames, corners = _chain(arm, self.joints)
+        last = self.frames[-1]
+        self.tip = last[:3, 3]
+        self.axis = last[:3, :3] @ casadi.DM(arm.pen.tool_axis)
+        self.task = casadi.vertcat(self.tip, *self._pointing()) if arm.pen.hold is PenHold.TOOL_AXIS else self.tip
+        self.nodes = casadi.horzcat(*corners).T
+
+    def _pointing(self) -> list[casadi.SX]:
+        """The horizontal components of the tool axis that are not zero by construction."""
+        turn = self.joints[0] if self.arm.joints[0].kind is JointKind.REVOLUTE else 0
+        c, s = casadi.cos(turn), casadi.sin(turn)
+        components = casadi.vertcat(c * self.axis[0] + s * self.axis[1], c * self.axis[1] - s * self.axis[0])
+        probe = casadi.Function("probe", [self.independent], [components])
+        configurations = np.random.default_rng(0).uniform(-np.pi, np.pi, (self.n_independent, _PROBES))
+        largest = np.abs(np.array(probe.map(_PROBES)(configurations))).max(axis=1)
+        return [components[row] for row in range(2) if largest[row] > 1e-9]
+
+    @property
+    def n_independent(self) -> int:
+        return len(self.arm.independent_joints)
+
+    @property
+    def n_task(self) -> int:
+        return int(self.task.shape[0])
+
+    @property
+    def n_redundant(self) -> int:
+        """Degrees of freedom left at a pen target."""
+        return self.n_independent - self.n_task
+
+    @cached_property
+    def _pose(self) -> CompiledFunction:
+        return CompiledFunction("pose", [self.independent], [self.frames[-1]])
+
+    @cached_property
+    def _tip(self) -> CompiledFunction:
+        return CompiledFunction("tip", [self.independent], [self.tip])
+
+    @cached_property
+    def _axis(self) -> CompiledFunction:
+        return CompiledFunction("axis", [self.independent], [self.axis])
+
+    @cached_property
+    def _nodes(self) -> CompiledFunction:
+        return CompiledFunction("nodes", [self.independent], [self.nodes])
+
+    @cached_property
+    def _task(self) -> CompiledFunction:
+        return CompiledFunction("task", [self.independent], [self.task, casadi.jacobian(self.task, self.independent)])
+
+    @cached_property
+    def _jacobian(self) -> CompiledFunction:
+        joints = casadi.SX.sym("q", self.arm.n_joints)
+        return CompiledFunction("jacobian", [joints], [self.symbolic_jacobian(joints)[2]])
+
+    def symbolic_jacobian(self, joints: casadi.SX) -> tuple[casadi.SX, casadi.SX, casadi.SX]:
+        """Tip, tool axis and the geometric 6 x n Jacobian at symbolic joints, each taken as independent."""
+        frames, _ = _chain(self.arm, joints)
+        tip = frames[-1][:3, 3]
+        axes = [casadi.SX([0, 0, 1]), *[frame[:3, 2] for frame in frames[:-1]]]
+        angular = casadi.horzcat(
+            *[
+                axis if joint.kind is JointKind.REVOLUTE else casadi.SX.zeros(3)
+                for axis, joint in zip(axes, self.arm.joints, strict=True)
+            ]
+        )
+        pointing = frames[-1][:3, :3] @ casadi.DM(self.arm.pen.tool_axis)
+        return tip, pointing, casadi.vertcat(casadi.jacobian(tip, joints), angular)
+
+    def pose(self, independent: FloatArray) -> FloatArray:
+        """T_base_pen (n, 4, 4), mm, of configurations (n, n_independent)."""
+        return self._pose(independent)[0]
+
+    def tip_mm(self, independent: FloatArray) -> FloatArray:
+        """Pen tip (n, 3), mm, of configurations (n, n_independent)."""
+        return self._tip(independent)[0]
+
+    def tool_axis(self, independent: FloatArray) -> FloatArray:
+        """Unit vector (n, 3) out of the nib, in the base frame, of configurations (n, n_independent)."""
+        return self._axis(independent)[0]
+
+    def nodes_mm(self, independent: FloatArray) -> FloatArray:
+        """Corners of the link chain (n, n_nodes, 3), mm, from the first joint to the tip."""
+        return self._nodes(independent)[0]
+
+    def task_and_jacobian(self, independent: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Task (n, n_task) and its derivative by the independent joints (n, n_task, n_independent)."""
+        task, jacobian = self._task(independent)
+        return task, jacobian.reshape(len(independent), self.n_task, self.n_independent)
+
+    def jacobian(self, joints: FloatArray) -> FloatArray:
+        """Geometric Jacobian in the base frame, (n, 6, n_joints): linear rows in mm, then angular rows,
+        of all joints (n, n_joints) as if no coupling held."""
+        return self._jacobian(joints)[0].reshape(len(joints), 6, self.arm.n_joints)
+
+    def task_target(self, tip_mm: FloatArray) -> FloatArray:
+        """(n, n_task) the task's value where the tip is at (n, 3) and the pen is held as the arm holds it."""
+        target = np.zeros((len(tip_mm), self.n_task))
+        target[:, :3] = tip_mm
+        return target
+
+    def independent_of(self, joints: FloatArray) -> FloatArray:
+        """The independent joints (..., n_independent) among all (..., n_joints)."""
+        chosen: FloatArray = np.ascontiguousarray(joints[..., list(self.arm.independent_joints)])
+        return chosen
+
+
+def _chain(arm: Arm, joints: casadi.SX) -> tuple[list[casadi.SX], list[casadi.SX]]:
+    """Frames 1..n as 4 x 4 matrices, and the corners of the link chain as points."""
+    frame = casadi.SX.eye(4)
+    frames, corners = [], []
+    for index, joint in enumerate(arm.joints):
+        revolute = joint.kind is JointKind.REVOLUTE
+        theta = joint.theta_rad + (joints[index] if revolute else 0)
+        d = joint.d_mm + (0 if revolute else joints[index])
+        along = frame @ casadi.vertcat(0, 0, d, 1)
+        frame = frame @ _dh(theta, d, joint.a_mm, joint.alpha_rad)
+        corners += [along[:3], frame[:3, 3]]
+        frames.append(frame)
+    return frames, corners
+
+
+def _dh(theta: casadi.SX | float, d: casadi.SX | float, a_mm: float, alpha_rad: float) -> casadi.SX:
+    """Rz(theta) Tz(d) Tx(a) Rx(alpha), with exact zeros and ones where alpha is a right angle."""
+    c, s = casadi.cos(theta), casadi.sin(theta)
+    ca, sa = _exact(np.cos(alpha_rad)), _exact(np.sin(alpha_rad))
+    return casadi.vertcat(
+        casadi.horzcat(c, -s * ca, s * sa, a_mm * c),
+        casadi.horzcat(s, c * ca, -c * sa, a_mm * s),
+        casadi.horzcat(0, sa, ca, d),
+        casadi.horzcat(0, 0, 0, 1),
+    )
+
+
+def _exact(value: float) -> float:
+    rounded = round(value)
+    return float(rounded) if abs(value - rounded) < 1e-15 else float(value)
+
+
+@lru_cache(maxsize=16)
+def kinematics_of(arm: Arm) -> Kinematics:
+    """The kinematics of an arm, built once."""
+    return Kinematics(arm)

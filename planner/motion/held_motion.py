@@ -1,0 +1,88 @@
+"""Strokes timed so that between samples, too, the tip stays within the tolerance of its path.
+
+Caps on the speed along a path (`speed_cap`, `chord_error_limit`) foresee what samples cut off where the pen is at
+speed. What is left is measured on the samples themselves: where it is too much, the speed around is capped and the
+stroke timed anew, further around with every round, so that in the end the whole of it is slower.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from planner.arrays import FloatArray
+from planner.inverse_kinematics.joint_path import JointPaths
+from planner.kinematics.chain import Kinematics
+from planner.motion.between_samples import stroke_excess
+from planner.motion.stroke_motion import StrokeMotions, motions
+from planner.placement.pen_path import PenPaths
+from planner.ragged import starts_of, within
+from planner.timing.limits import Limits
+from planner.timing.path_timing import minimum_time
+from planner.timing.timing_problem import FRACTIONS, TimingProblem
+
+_ROUNDS = 16
+_MARGIN = 0.97
+_SLOWEST = 0.5
+"""Least factor that a round slows by: figures far above what is allowed follow no power of the speed."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Timed:
+    """joints: (n, n_joints) samples of a stroke. settled: whether it is timed near the least time, rather than by the
+    fallback. held: whether the tip is within the tolerance between all samples."""
+
+    joints: FloatArray
+    converged: bool
+    held: bool
+
+
+def timed_within(
+    kinematics: Kinematics,
+    limits: Limits,
+    paths: PenPaths,
+    splines: JointPaths,
+    rate_limit: FloatArray,
+    tolerance_mm: float,
+    rate_hz: float,
+) -> list[Timed]:
+    """The motion of each path: paths and splines with the same cells, rate_limit (total cells, n_fractions) as
+    `TimingProblem.of` has it."""
+    derivatives = (splines.positions(FRACTIONS, 1), splines.positions(FRACTIONS, 2), splines.positions(FRACTIONS, 3))
+    problem = TimingProblem.of(paths.n_cells, derivatives, limits, rate_limit)
+    timed: dict[int, Timed] = {}
+    left = np.arange(len(paths.n_cells))
+    for around in 2 ** np.arange(_ROUNDS):
+        timing = minimum_time(problem)
+        motion = motions(splines, timing.rates, limits, rate_hz)
+        samples = motion.samples()
+        excess = stroke_excess(kinematics, paths, motion, samples, tolerance_mm)
+        over = np.maximum.reduceat(excess, starts_of(motion.n_periods)[:-1]) > 1.0
+        timed.update(zip(left.tolist(), map(Timed, samples, timing.converged.tolist(), (~over).tolist()), strict=True))
+        if not over.any():
+            break
+        cap = _slower_where(motion, excess, int(around))
+        problem = replace(problem, rate_limit=np.minimum(problem.rate_limit, cap)).subset(over)
+        paths, splines, left = paths.subset(over), splines.subset(over), left[over]
+    return [timed[index] for index in sorted(timed)]
+
+
+def _slower_where(motion: StrokeMotions, excess: FloatArray, around: int) -> FloatArray:
+    """(total cells,) caps on dsigma/dt below the motion's own in the cells of each step (total steps,) with an excess,
+    and of so many steps before and behind; inf elsewhere."""
+    n_cells, n_steps = motion.paths.n_cells, motion.n_periods
+    cells, _ = motion.places()  # one more than steps for each path
+    first = np.repeat(starts_of(n_steps + 1)[:-1], n_steps)
+    step = within(n_steps)
+    begin = cells[first + np.maximum(step - around, 0)]
+    end = cells[first + np.minimum(step + 1 + around, np.repeat(n_steps, n_steps))]
+    rate = motion.rates @ np.vander(FRACTIONS, 4, increasing=True).T
+    fastest = np.sqrt(rate.max(axis=1))
+    cap = np.full(int(n_cells.sum()), np.inf)
+    for at in np.flatnonzero(excess > 1.0).tolist():
+        slower = max(_MARGIN / np.sqrt(excess[at]), _SLOWEST)
+        cap[begin[at] : end[at] + 1] = np.minimum(
+            cap[begin[at] : end[at] + 1], slower * fastest[begin[at] : end[at] + 1]
+        )
+    return cap

@@ -1,0 +1,238 @@
+"""Three rectangles to draw on, in the half ring in front of an arm.
+
+Canvas points (X, Y) lie as in an SVG, X to the right and Y down, seen from behind the arm with the base at
+the bottom: arm x = far side - Y, arm y = left side - X.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi
+import numpy as np
+
+from planner.arms.arm import Arm, JointKind
+from planner.arrays import BoolArray, FloatArray
+from planner.errors import PlanError
+from planner.kinematics.chain import kinematics_of
+from planner.kinematics.link_clearance import KEPT_MM, link_clearance
+from planner.kinematics.projection import project
+from planner.redundancy.configuration_map import ConfigurationMap, configuration_branches, within_limits
+from planner.settings import CanvasKind
+
+_GRID_CELLS = 160
+_RADIAL_STEPS = 600
+_HEIGHTS = 7
+
+
+@dataclass(frozen=True, slots=True)
+class Canvas:
+    """An axis-aligned rectangle of paper in arm millimetres: near and far are distances from the base along
+    x, right and left are the y of its sides. Errors: PlanError where that is no rectangle."""
+
+    kind: CanvasKind
+    near_mm: float
+    far_mm: float
+    right_mm: float
+    left_mm: float
+
+    def __post_init__(self) -> None:
+        if not (0 < self.width_mm < np.inf and 0 < self.height_mm < np.inf):
+            raise PlanError(
+                f"there is no {self.kind} canvas: it would be {self.width_mm:g} mm wide and"
+                f" {self.height_mm:g} mm high; try another --canvas"
+            )
+
+    @property
+    def width_mm(self) -> float:
+        """Size across the arm, along y: the canvas' X."""
+        return self.left_mm - self.right_mm
+
+    @property
+    def height_mm(self) -> float:
+        """Size away from the arm, along x: the canvas' Y."""
+        return self.far_mm - self.near_mm
+
+    @property
+    def corners_arm_mm(self) -> FloatArray:
+        """(4, 2): canvas corners (0, 0), (w, 0), (w, h), (0, h) in arm coordinates."""
+        return np.array(
+            [
+                [self.far_mm, self.left_mm],
+                [self.far_mm, self.right_mm],
+                [self.near_mm, self.right_mm],
+                [self.near_mm, self.left_mm],
+            ]
+        )
+
+    def to_arm_mm(self, canvas_mm: FloatArray) -> FloatArray:
+        """(..., 2) arm coordinates of canvas points (..., 2)."""
+        arm_mm: FloatArray = np.stack((self.far_mm - canvas_mm[..., 1], self.left_mm - canvas_mm[..., 0]), axis=-1)
+        return arm_mm
+
+
+def documented_canvas(r_max_mm: float, r_min_mm: float) -> Canvas:
+    """The documents' rectangle: near side tangent to the inner circle, far corners on the outer one, half
+    angle acos(sqrt(2)/r) - 45 degrees with r = r_max/r_min (seed document on the kinematics, drawing limits).
+    Errors: PlanError up to r = 2, where that angle is not above zero."""
+    inner = _share(CanvasKind.DOCUMENTED, r_max_mm, r_min_mm, 2.0)
+    return _tangent_canvas(CanvasKind.DOCUMENTED, r_max_mm, r_min_mm, float(np.arccos(np.sqrt(2) * inner) - np.pi / 4))
+
+
+def optimal_canvas(r_max_mm: float, r_min_mm: float) -> Canvas:
+    """The rectangle of largest area of the same kind: cos(half angle) = (1 + sqrt(1 + 8 r^2)) / (4 r), the
+    root of the derivative of the area that the documents misprint. Errors: PlanError where there is no ring."""
+    inner = _share(CanvasKind.OPTIMAL, r_max_mm, r_min_mm, 1.0)
+    return _tangent_canvas(
+        CanvasKind.OPTIMAL, r_max_mm, r_min_mm, float(np.arccos((inner + np.hypot(inner, np.sqrt(8))) / 4))
+    )
+
+
+def _share(kind: CanvasKind, r_max_mm: float, r_min_mm: float, least: float) -> float:
+    """1/r, which there is for a ring without a hole too. Errors: PlanError where r is not above its least value."""
+    if not least * r_min_mm < r_max_mm < np.inf:
+        raise PlanError(
+            f"no {kind} canvas: the outer radius {r_max_mm:.1f} mm is not above {least:g} times the inner"
+            f" radius {r_min_mm:.1f} mm; try another --canvas"
+        )
+    return r_min_mm / r_max_mm
+
+
+def _tangent_canvas(kind: CanvasKind, r_max_mm: float, r_min_mm: float, half_angle_rad: float) -> Canvas:
+    half_width = r_max_mm * float(np.sin(half_angle_rad))
+    return Canvas(kind, r_min_mm, r_max_mm * float(np.cos(half_angle_rad)), -half_width, half_width)
+
+
+@lru_cache(maxsize=16)
+def geometric_reach_mm(arm: Arm) -> float:
+    """Largest distance from the base axis at which the pen, held as the arm holds it, touches the paper, limits of
+    turning joints aside: how far a joint slides is a length of the arm. For the drawing arm
+    sqrt((L2+L3+L4)^2 - (L5-L1)^2): minus, where the documents print plus."""
+    kinematics = kinematics_of(arm)
+    branches = configuration_branches(arm)
+    outermost = max(branches, key=lambda branch: branch.radii_mm[-1])
+    solver = casadi.nlpsol(
+        "reach",
+        "ipopt",
+        {"x": kinematics.independent, "f": -(kinematics.tip[0] / 100), "g": kinematics.task[1:]},
+        {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False, "error_on_fail": False},
+    )
+    slides = kinematics.independent_of(np.array([joint.kind is JointKind.PRISMATIC for joint in arm.joints]))
+    solution = solver(
+        x0=outermost.configurations[-1],
+        lbg=0,
+        ubg=0,
+        lbx=np.where(slides, kinematics.independent_of(arm.minimum), -np.inf),
+        ubx=np.where(slides, kinematics.independent_of(arm.maximum), np.inf),
+    )
+    found_mm = float(-solution["f"]) * 100 if solver.stats()["success"] else -np.inf
+    return max(found_mm, float(outermost.radii_mm[-1]))
+
+
+@lru_cache(maxsize=16)
+def usable_canvas(arm: Arm, lift_mm: float) -> Canvas:
+    """The largest axis-aligned rectangle where the pen gets to the paper and to the lift height
+    with all joints within limits, clear of singularities and links apart, found on a grid and then grown."""
+    branches = configuration_branches(arm)
+    sectors = [_Sector.of(branch, lift_mm) for branch in branches]
+    outer = max(float(branch.radii_mm[-1]) for branch in branches)
+    step = outer / _GRID_CELLS
+    x = np.arange(0.0, outer + step, step)
+    y = np.arange(-outer, outer + step, step)
+    inside = _in_any(sectors, np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1))
+    found = _largest_rectangle(inside)
+    if found is None:
+        raise PlanError(
+            f"arm {arm.name} has no usable canvas: nowhere is the paper reached pen down and pen up"
+            f" ({lift_mm:g} mm) within the joint limits"
+        )
+    i0, i1, j0, j1 = found
+    sides = np.array([x[i0], x[i1], y[j0], y[j1]])
+    grow = step * np.array([-1.0, 1.0, -1.0, 1.0])
+    while np.abs(grow).max() > 0.005:  # push each side out as far as it goes
+        moved = False
+        for side in range(4):
+            trial = sides.copy()
+            trial[side] += grow[side]
+            if _in_any(sectors, _border(trial)).all():
+                sides, moved = trial, True
+        if not moved:
+            grow /= 2
+    near, far, right, left = map(float, sides)
+    return Canvas(CanvasKind.USABLE, near, far, right, left)
+
+
+@lru_cache(maxsize=32)
+def canvas_of(arm: Arm, kind: CanvasKind, lift_mm: float) -> Canvas:
+    """The canvas of that kind. Errors: PlanError where there is none."""
+    if kind is CanvasKind.USABLE:
+        return usable_canvas(arm, lift_mm)
+    innermost = min(float(branch.radii_mm[0]) for branch in configuration_branches(arm))
+    r_max, r_min = geometric_reach_mm(arm), max(arm.workspace.inner_radius_mm, innermost)
+    return (documented_canvas if kind is CanvasKind.DOCUMENTED else optimal_canvas)(r_max, r_min)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Sector:
+    """Where field configurations are within limits: for each radius an interval of azimuth."""
+
+    radii_mm: FloatArray
+    from_rad: FloatArray
+    to_rad: FloatArray
+
+    @staticmethod
+    def of(configuration_map: ConfigurationMap, lift_mm: float) -> _Sector:
+        arm = configuration_map.arm
+        radii = np.linspace(configuration_map.radii_mm[0], configuration_map.radii_mm[-1], _RADIAL_STEPS)
+        low, high = np.full(len(radii), -np.pi / 2), np.full(len(radii), np.pi / 2)
+        for height in np.linspace(0.0, lift_mm, _HEIGHTS):
+            tips = np.column_stack((radii, np.zeros_like(radii), np.full_like(radii, height)))
+            independent, exact = project(kinematics_of(arm), configuration_map.reference(tips), tips)
+            good = exact & within_limits(arm, independent, first_joint=False)
+            good &= link_clearance(arm).least_mm(independent)[0] >= KEPT_MM
+            low = np.where(good, np.maximum(low, arm.minimum[0] - independent[:, 0]), np.inf)
+            high = np.where(good, np.minimum(high, arm.maximum[0] - independent[:, 0]), -np.inf)
+        return _Sector(radii, low, high)
+
+    def contains(self, points_mm: FloatArray) -> BoolArray:
+        radius = np.hypot(points_mm[..., 0], points_mm[..., 1])
+        azimuth = np.arctan2(points_mm[..., 1], points_mm[..., 0])
+        after = np.clip(np.searchsorted(self.radii_mm, radius), 1, len(self.radii_mm) - 1)
+        inside: BoolArray = (radius >= self.radii_mm[0]) & (radius <= self.radii_mm[-1])
+        for node in (after - 1, after):  # both neighbours have to agree
+            inside &= (azimuth >= self.from_rad[node]) & (azimuth <= self.to_rad[node])
+        return inside
+
+
+def _in_any(sectors: Sequence[_Sector], points_mm: FloatArray) -> BoolArray:
+    inside: BoolArray = np.any([sector.contains(points_mm) for sector in sectors], axis=0)
+    return inside
+
+
+def _border(sides: FloatArray) -> FloatArray:
+    """(n, 2) dense points on the border of a rectangle (x0, x1, y0, y1)."""
+    x0, x1, y0, y1 = sides
+    x, y = np.linspace(x0, x1, 400), np.linspace(y0, y1, 800)
+    lines = ((x, y0), (x, y1), (x0, y), (x1, y))
+    return np.concatenate([np.column_stack(np.broadcast_arrays(*line)) for line in lines])
+
+
+def _largest_rectangle(mask: BoolArray) -> tuple[int, int, int, int] | None:
+    """First and last row and column of the largest all-true block: for each row the largest rectangle under
+    its histogram of true runs."""
+    heights = np.zeros(mask.shape[1] + 1, dtype=np.int64)
+    best, found = 0, None
+    for row, line in enumerate(mask):
+        heights[:-1] = np.where(line, heights[:-1] + 1, 0)
+        stack: list[tuple[int, int]] = []
+        for column, height in enumerate(heights.tolist()):
+            start = column
+            while stack and stack[-1][1] >= height:
+                start, tall = stack.pop()
+                area = (tall - 1) * (column - 1 - start)
+                if area > best:
+                    best, found = area, (row - tall + 1, row, start, column - 1)
+            stack.append((start, height))
+    return found

@@ -1,0 +1,88 @@
+"""A whole drawing by the shipped player and driver on the firmware: what its pins have drawn is the drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hardware.compensation.servo_values import pulse_calibration
+from hardware.drivers.native.driver import NativeDriver
+from hardware.motion.slow_transfer import come_from
+from hardware.motion.tip import link_nodes_mm
+from hardware.playback.player import play
+from hardware.playback.preflight import set_points
+from hardware.playback.program import make_program
+from hardware.playback.progress import End, Request
+from hardware.simulation.ink import drawn_lines
+from planner.arms.arm_file import load_arm
+from planner.arrays import FloatArray
+from planner.checking.drawing_error import DrawingErrors, drawing_error
+from planner.pipeline import plan
+from planner.settings import PlanSettings
+from planner.trajectory import Trajectory
+from tests.hardware.emulator.emulator import Emulator, Faults, LockStep
+
+ARM = load_arm("drawing_arm")
+_EVERY_S = 0.005
+
+
+@pytest.fixture(scope="module")
+def drawing(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    target = tmp_path_factory.mktemp("drawing") / "drawing.svg"
+    target.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 30"><path d="M5 5 15 25 25 5"/>'
+        '<path d="M30 15h0"/><circle cx="45" cy="15" r="8"/></svg>'
+    )
+    return target
+
+
+@pytest.fixture(scope="module")
+def trajectory(drawing: Path) -> Trajectory:
+    return plan(drawing, PlanSettings(), lambda stage, done, total: None).trajectory
+
+
+def _on_pins(emulator: Emulator) -> FloatArray:
+    """(n, n_joints) positions that the pulses ask for, each servo going straight from one pulse to the next."""
+    calibration = pulse_calibration(ARM)
+    pulses = [emulator.pulses(channel) for channel in calibration.addresses]
+    times_s = np.arange(max(one.starts_s[0] for one in pulses), min(one.starts_s[-1] for one in pulses), _EVERY_S)
+    return calibration.to_joints(np.column_stack([np.interp(times_s, one.starts_s, one.widths_us) for one in pulses]))
+
+
+def _drawing_error(emulator: Emulator, trajectory: Trajectory) -> DrawingErrors:
+    """Beside the planned path of the pen on the paper."""
+    tip_mm = link_nodes_mm(ARM, ARM.from_file_units(trajectory.positions))[:, -1, :2]
+    wanted = [tip_mm[trajectory.stroke == stroke] for stroke in range(3)]
+    return drawing_error(drawn_lines(ARM, _on_pins(emulator)), wanted)
+
+
+@pytest.mark.parametrize("rests", [0, 70])
+def test_what_the_pins_draw_is_the_drawing_paused_or_not(
+    lock_step: Callable[[Faults], LockStep], drawing: Path, trajectory: Trajectory, rests: int
+) -> None:
+    controller = lock_step(Faults(flip=0.001, drop=0.001))
+    calibration = pulse_calibration(ARM)
+    driver = NativeDriver(
+        lambda: controller,
+        calibration.to_servos,
+        lambda held_us, pose, rate_hz: come_from(ARM, calibration.to_joints(held_us), pose, rate_hz),
+        calibration.addresses,
+        calibration.ranges,
+        controller,
+    )
+    program = make_program(ARM, set_points(trajectory, ARM, drawing), trajectory.stroke, trajectory.rate_hz)
+    requests = iter([*[Request.GO] * 160, *[Request.PAUSE] * rests])
+
+    finished: list[int] = []
+    played = play(
+        program, ARM, driver, controller, request=lambda: next(requests, Request.GO), finished=finished.append
+    )
+    assert played.end is End.PLAYED
+    assert finished == [0, 1, 2]
+    controller.sleep_until(controller.now_s() + 0.1)
+    found = _drawing_error(controller.emulator, trajectory)
+    assert found.most_mm < 0.1
+    assert found.largest_mm < 0.2  # half-microseconds of five joints at once, and straight lines over 20 ms

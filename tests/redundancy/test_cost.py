@@ -1,0 +1,98 @@
+"""The weights of the configuration map do what their names say."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from planner.arms.arm import Arm
+from planner.arrays import FloatArray
+from planner.kinematics.chain import kinematics_of
+from planner.redundancy.configuration_map import ConfigurationMap, configuration_map_of
+from planner.redundancy.cost import ConfigurationCost
+from planner.settings import ConfigurationWeights
+from tests.arms.chains import load_once
+
+TIME, SENSITIVITY, LIMITS = (
+    ConfigurationWeights(1, 0, 0, 0.1),
+    ConfigurationWeights(0.05, 1, 0, 0.1),
+    ConfigurationWeights(0.05, 0, 0, 1),
+)
+
+
+@pytest.fixture(scope="module")
+def arm() -> Arm:
+    return load_once("drawing_arm")
+
+
+def slopes(configuration_map: ConfigurationMap) -> FloatArray:
+    """(n,) mean over the radius of the fastest joint's |dq/drho|, in deg/mm."""
+    radii = np.linspace(40.0, 140.0, 200)
+    tips = np.column_stack((radii, np.zeros((len(radii), 2))))
+    joints = configuration_map.arm.complete(configuration_map.configurations_at(tips)[0])
+    return np.degrees(np.abs(np.gradient(joints, radii, axis=0)).max(axis=1))
+
+
+def sideways(configuration_map: ConfigurationMap) -> FloatArray:
+    """(n,) rms of how far a degree of error of each joint moves the tip across the paper, in mm, by differences."""
+    radii = np.linspace(40.0, 140.0, 30)
+    tips = np.column_stack((radii, np.zeros((len(radii), 2))))
+    arm = configuration_map.arm
+    joints = arm.complete(configuration_map.configurations_at(tips)[0])
+    kinematics = kinematics_of(arm)
+    jacobian = kinematics.jacobian(joints)[:, :2] * np.radians(1)
+    mean: FloatArray = np.sqrt((jacobian**2).sum(axis=(1, 2)))
+    return mean
+
+
+def test_time_makes_the_fastest_joint_slower(arm: Arm) -> None:
+    assert slopes(configuration_map_of(arm, TIME)).mean() < 0.95 * slopes(configuration_map_of(arm, SENSITIVITY)).mean()
+
+
+def test_sensitivity_makes_the_tip_steadier(arm: Arm) -> None:
+    assert (
+        sideways(configuration_map_of(arm, SENSITIVITY)).mean()
+        < 0.97 * sideways(configuration_map_of(arm, TIME)).mean()
+    )
+
+
+def test_limits_keep_configurations_nearer_the_middle_of_their_ranges(arm: Arm) -> None:
+    def spread(configuration_map: ConfigurationMap) -> float:
+        joints = arm.complete(configuration_map.configurations)
+        return float((((joints - (arm.maximum + arm.minimum) / 2) / (arm.maximum - arm.minimum)) ** 2).mean())
+
+    assert spread(configuration_map_of(arm, LIMITS)) < spread(configuration_map_of(arm, SENSITIVITY))
+
+
+def slopes_that_cost(arm: Arm, weights: ConfigurationWeights, *speeds: float) -> float:
+    """Cost density of a millimetre in which joints take these shares of the time that is typical of the arm."""
+    cost = ConfigurationCost(kinematics_of(arm), weights, 300.0, 150.0)
+    steps = np.array([*speeds, *[0.0] * (arm.n_joints - len(speeds))]) * arm.max_velocity / 300.0
+    return float(cost.steps(steps, 1.0))
+
+
+def test_time_is_that_of_the_fastest_joint(arm: Arm) -> None:
+    time = ConfigurationWeights(1, 0, 0, 0)
+    assert slopes_that_cost(arm, time, 0.5, 0.5, 0.5) == pytest.approx(slopes_that_cost(arm, time, 0.5))
+    assert slopes_that_cost(arm, time, 1.0) == pytest.approx(4 * slopes_that_cost(arm, time, 0.5))
+
+
+def test_one_joint_that_rests_is_worth_more_than_two_that_move_half_as_much(arm: Arm) -> None:
+    turns = ConfigurationWeights(0, 0, 1, 0)
+    assert slopes_that_cost(arm, turns, 0.0, 1.0) < 0.9 * slopes_that_cost(arm, turns, 0.5, 0.5)
+    assert slopes_that_cost(arm, turns, 0.4) > slopes_that_cost(arm, turns, 0.3) > slopes_that_cost(arm, turns) == 0.0
+
+
+def test_reversals_let_a_joint_rest(arm: Arm) -> None:
+    """Between its corners the map of a drawing arm has a joint at rest, and with time alone it has none."""
+
+    def resting(weights: ConfigurationWeights) -> float:
+        radii = np.linspace(40.0, 140.0, 400)
+        joints = arm.complete(
+            configuration_map_of(arm, weights).configurations_at(np.column_stack((radii, np.zeros((len(radii), 2)))))[0]
+        )[:, 1:]
+        slowest = np.degrees(np.abs(np.gradient(joints, radii, axis=0)).min(axis=1))
+        return float((slowest < 0.01).mean())
+
+    assert resting(ConfigurationWeights(0.05, 0, 1, 0.1)) > 0.4
+    assert resting(TIME) < 0.2
