@@ -29,10 +29,10 @@ STAGES = {
     "join_strokes": "join",
     "order_strokes": "order",
     "smooth_paths": "smooth",
-    "joint_paths": "postures",
+    "joint_paths": "configurations",
     "minimum_time": "timing",
     "motions": "check limits",
-    "plan_travel_moves": "hops",
+    "plan_travel_moves": "travel moves",
 }
 
 

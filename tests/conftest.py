@@ -1,4 +1,5 @@
-"""What all tests share: how fast a machine is says nothing of whether a law holds, and the arms that laws are tried on."""
+"""What all tests share: how fast a machine is says nothing of whether a law holds, and the arms that laws are tried
+on."""
 
 from __future__ import annotations
 

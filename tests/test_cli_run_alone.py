@@ -206,7 +206,8 @@ def test_a_name_too_long_for_a_journal_is_drawn_without_one(csv: Path, capsys: p
         b"\x00\xff\x80" * 1000,
         b'{"journal": 1}\n',
         b'{"journal": 1, "sha256": "SHA", "arm": "drawing_arm", "driver": "sim", "next_stroke": 99}\n',
-        b'{"journal": 1, "sha256": "SHA", "arm": "drawing_arm", "driver": "sim", "next_stroke": 1, "sent_stroke": 99}\n',
+        b'{"journal": 1, "sha256": "SHA", "arm": "drawing_arm", "driver": "sim", "next_stroke": 1, '
+        b'"sent_stroke": 99}\n',
     ],
 )
 def test_a_journal_that_cannot_be_true_is_refused(

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from planner.arms import configuration_cost, file_section
+from planner.arms import file_section
 from planner.arms.arm_file import known_arms, load_arm
 from planner.cli import quantities
 from planner.inverse_kinematics import dls, guesses, nlp
+from planner.redundancy import cost
 from planner.settings import PlanSettings
 from planner.workspace.canvas import usable_canvas
 
@@ -25,7 +26,7 @@ _FIGURES = [
     ("mathematics.md", r"For drawing, the tolerance is (\S+) mm", dls.FOR_DRAWING.tolerance_xy_mm),
     ("mathematics.md", r"where a radian counts as (\d+) cm", dls._LEVER_CM),
     ("arms.md", r"lengths together are (\d+) m", file_section.LONGEST_MM / 1000),
-    ("commands.md", r"time counts for a (twentieth) of", configuration_cost._LEAST_TIME),
+    ("commands.md", r"time counts for a (twentieth) of", cost._LEAST_TIME),
     ("commands.md", r"--tolerance LENGTH` .*?\| ([\d.]+) mm", PlanSettings().tolerance_mm),
     ("commands.md", r"--rate HZ` \| samples per second, (\d+) or more", quantities.MIN_RATE_HZ),
 ]

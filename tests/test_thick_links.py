@@ -104,7 +104,7 @@ def test_strokes_that_no_hop_gets_to_are_refused_or_left_out(drawing: Path, monk
     """Whatever comes to the stroke near the base collides."""
 
     def colliding(chunk: TravelChunk) -> list[TravelMove]:
-        bad = [meet is not None and abs(meet.tip_mm[1]) < 20 and meet.tip_mm[0] < 40 for meet in chunk.meet]
+        bad = [end is not None and abs(end.tip_mm[1]) < 20 and end.tip_mm[0] < 40 for end in chunk.end]
         return [
             replace(move, collision=Collision(("link q2", "link q4"), -1.5, len(move.joints) - 1)) if is_bad else move
             for move, is_bad in zip(planned_travel_moves(chunk), bad, strict=True)

@@ -11,7 +11,7 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.checking.chain import chain_poses
-from planner.checking.links import Capsules, Rooms
+from planner.checking.links import Capsules, Clearances
 from planner.trajectory import Trajectory
 
 POINTS_PER_STEP = 10
@@ -77,7 +77,7 @@ class Sweep:
 
     sample: (p,) the sample at or before the point. tip_mm: (p, 3). lowest_mm: (p,) lowest node of the
     links. tilt_rad: (p,) angle of the tool axis to straight down. down: (p,) the pen is on the paper, which
-    between samples means on it at both. rooms: between links, where they have a thickness.
+    between samples means on it at both. clearances: between links, where they have a thickness.
     """
 
     interpolation: Interpolation
@@ -87,7 +87,7 @@ class Sweep:
     lowest_mm: FloatArray
     tilt_rad: FloatArray
     down: BoolArray
-    rooms: Rooms | None
+    clearances: Clearances | None
 
 
 def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation, per_step: int = POINTS_PER_STEP) -> Sweep:
@@ -95,23 +95,23 @@ def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation, per_st
     positions = arm.from_file_units(trajectory.positions)
     n_points = (trajectory.n_samples - 1) * per_step + 1
     tip, lowest, tilt = np.empty((n_points, 3)), np.empty(n_points), np.empty(n_points)
-    bars = Capsules(arm, chain_poses(arm, positions[:1]).rows)
-    rooms: list[tuple[FloatArray, IntArray]] = []
+    capsules = Capsules(arm, chain_poses(arm, positions[:1]).rows)
+    clearances: list[tuple[FloatArray, IntArray]] = []
     start = 0
     for block in positions_between(positions, interpolation, per_step):
         poses = chain_poses(arm, block)
-        if bars.pair_names:
-            rooms.append(bars.rooms(poses))
+        if capsules.pair_names:
+            clearances.append(capsules.clearances(poses))
         part = slice(start, start + len(block))
         tip[part] = poses.tip_mm.T
-        lowest[part] = np.minimum(poses.lowest_mm, bars.lowest_mm(poses))
+        lowest[part] = np.minimum(poses.lowest_mm, capsules.lowest_mm(poses))
         tilt[part] = np.arctan2(np.hypot(poses.tool[0], poses.tool[1]), -poses.tool[2])
         start += len(block)
     point = np.arange(n_points)
     sample, between = point // per_step, point % per_step > 0
     down = trajectory.pen[sample] & (~between | trajectory.pen[np.minimum(sample + 1, trajectory.n_samples - 1)])
     apart = None
-    if rooms:
-        room, pair = (np.concatenate(part) for part in zip(*rooms, strict=True))
-        apart = Rooms(room, pair, bars.pair_names)
+    if clearances:
+        clearance, pair = (np.concatenate(part) for part in zip(*clearances, strict=True))
+        apart = Clearances(clearance, pair, capsules.pair_names)
     return Sweep(interpolation, per_step, sample, tip, lowest, tilt, down, apart)

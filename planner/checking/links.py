@@ -1,8 +1,8 @@
 """Links as capsules: how far they are from each other, and how low they come.
 
-A link with a thickness is a bar about each segment of its row. Bars of one row are held square to each other. Two bars
-between which the chain is shorter than half of both thicknesses together touch at that joint whatever the arm does:
-they count where they are folded to less than a right angle, by the far end of the shorter one.
+A link with a thickness is a capsule about each segment of its row. Capsules of one row are held square to each other.
+Two capsules between which the chain is shorter than half of both thicknesses together touch at that joint whatever the
+arm does: they count where they are folded to less than a right angle, by the far end of the shorter one.
 """
 
 from __future__ import annotations
@@ -21,17 +21,18 @@ _RIGHT_ANGLE = 1e-9
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Rooms:
-    """room_mm: (n,) between the two bars that are closest, below zero where they overlap, infinite where no two count.
+class Clearances:
+    """clearance_mm: (n,) between the two capsules that are closest, below zero where they overlap, infinite where no
+    two count.
     pair: (n,) which of the pairs that is, by their names."""
 
-    room_mm: FloatArray
+    clearance_mm: FloatArray
     pair: IntArray
     names: tuple[str, ...]
 
 
 class Capsules:
-    """The bars of an arm whose chain has these segments: the row of each, as in `ChainPoses.rows`."""
+    """The capsules of an arm whose chain has these segments: the row of each, as in `ChainPoses.rows`."""
 
     def __init__(self, arm: Arm, rows: tuple[int, ...]) -> None:
         self._half_mm = [None if (thickness := arm.joints[row].thickness_mm) is None else thickness / 2 for row in rows]
@@ -48,14 +49,14 @@ class Capsules:
         # Up to the joint where the last row, which carries the pen, begins.
         self._counted = rows.index(rows[-1]) if rows else 0
 
-    def rooms(self, poses: ChainPoses) -> tuple[FloatArray, IntArray]:
-        """As in `Rooms`; there have to be pairs."""
-        rooms = []
+    def clearances(self, poses: ChainPoses) -> tuple[FloatArray, IntArray]:
+        """As in `Clearances`; there have to be pairs."""
+        clearances = []
         for one, other, halves, contact in self._pairs:
             near, start = poses.nodes_mm[one + 1], poses.nodes_mm[other]
             away, along = poses.nodes_mm[one] - near, poses.nodes_mm[other + 1] - start
             if not contact:
-                rooms.append(_gap_mm(near, away, start, along) - halves)
+                clearances.append(_gap_mm(near, away, start, along) - halves)
                 continue
             sizes = np.linalg.norm(away, axis=0), np.linalg.norm(along, axis=0)
             folded: BoolArray = (away * along).sum(axis=0) > _RIGHT_ANGLE * sizes[0] * sizes[1]
@@ -65,13 +66,13 @@ class Capsules:
                 _gap_mm(near + away, nothing, start, along),
                 _gap_mm(start + along, nothing, near, away),
             )
-            rooms.append(np.where(folded, gap - halves, np.inf))
-        table = np.stack(rooms)
+            clearances.append(np.where(folded, gap - halves, np.inf))
+        table = np.stack(clearances)
         return table.min(axis=0), table.argmin(axis=0)
 
     def lowest_mm(self, poses: ChainPoses) -> FloatArray:
-        """(n,) height of the lowest part of the bars, the foot that the arm stands on and the bar with the pen aside;
-        infinite where there is none."""
+        """(n,) height of the lowest part of the capsules, the foot that the arm stands on and the capsule with the pen
+        aside; infinite where there is none."""
         lowest = np.full(poses.tip_mm.shape[1], np.inf)
         for node in range(1, self._counted + 1):
             half = max(self._half_mm[node - 1] or 0.0, self._half_mm[node] or 0.0)

@@ -149,24 +149,24 @@ def above_the_paper(trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_m
 
 
 def links_apart(trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_mm: float) -> list[Finding]:
-    """Room between links that have a thickness, where it is least; they may overlap by the tolerance."""
-    thick = [(sweep, sweep.rooms) for sweep in sweeps if sweep.rooms is not None]
+    """Clearance between links that have a thickness, where it is least; they may overlap by the tolerance."""
+    thick = [(sweep, sweep.clearances) for sweep in sweeps if sweep.clearances is not None]
     if not thick:
         return []
-    sweep, rooms = min(thick, key=lambda entry: float(entry[1].room_mm.min()))
-    point = int(np.argmin(rooms.room_mm))
-    room = float(rooms.room_mm[point])
-    if np.isinf(room):
+    sweep, clearances = min(thick, key=lambda entry: float(entry[1].clearance_mm.min()))
+    point = int(np.argmin(clearances.clearance_mm))
+    clearance = float(clearances.clearance_mm[point])
+    if np.isinf(clearance):
         return [Finding("links apart", True, remark="none is folded under the next")]
     return [
         Finding(
             "links apart",
-            room >= -tolerance_mm,
-            room,
+            clearance >= -tolerance_mm,
+            clearance,
             0.0,
             "mm",
             place_of(trajectory, int(sweep.sample[point]), point, sweep),
-            f"between {rooms.names[rooms.pair[point]]}, {sweep.interpolation.value} joints",
+            f"between {clearances.names[clearances.pair[point]]}, {sweep.interpolation.value} joints",
         )
     ]
 

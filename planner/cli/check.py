@@ -20,7 +20,7 @@ _EPILOG = """\
 examples:
   plan check traj.csv
   plan check traj.csv --drawing flower.svg --tolerance 0.1mm
-  plan check traj.csv --arm my_arm.toml --json check result.json
+  plan check traj.csv --arm my_arm.toml --json result.json
 
 exit codes: 0 everything holds; 1 something does not; 2 the files cannot be used"""
 

@@ -88,7 +88,7 @@ def _course_by_course(targets: Targets, solve_course: Callable[[FloatArray], Sol
     return Solutions(
         *(
             np.concatenate([getattr(each, name) for each in found])
-            for name in ("postures", "converged", "iterations", "error_mm")
+            for name in ("configurations", "converged", "iterations", "error_mm")
         )
     )
 

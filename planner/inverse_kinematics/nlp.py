@@ -183,11 +183,11 @@ def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, *, settl
     before = start
     for target in targets_mm[: 1 if settle else 0]:
         for _ in range(_MOST_SETTLING):
-            converged, good, count, _ = solver.solve(target, before)
+            settled, good, count, _ = solver.solve(target, before)
             iterations[0] += count
-            if not good or np.abs(converged - before).max() < 1e-4:
+            if not good or np.abs(settled - before).max() < 1e-4:
                 break
-            before = converged
+            before = settled
     for index, target in enumerate(targets_mm):
         configurations[index], converged[index], count, error_mm[index] = solver.solve(
             target, before, restarts=index == 0 or not settle

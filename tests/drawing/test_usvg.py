@@ -27,7 +27,7 @@ def test_work_is_bounded_whatever_the_load() -> None:
 
 
 def test_a_normaliser_without_a_disk_cache_works(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "file").contact()
+    (tmp_path / "file").touch()
     for variable in ("XDG_CACHE_HOME", "HOME"):
         monkeypatch.setenv(variable, str(tmp_path / "file"))
     usvg._module.cache_clear()

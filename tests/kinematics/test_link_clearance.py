@@ -102,10 +102,10 @@ def test_the_check_finds_the_same_clearance_by_its_own_mathematics(
     )
     independent = random_configurations(arm, seed, 5)
     poses = chain_poses(arm, arm.complete(independent))
-    bars = Capsules(arm, poses.rows)
-    wanted = bars.lowest_mm(poses)
-    if bars.pair_names:
-        wanted = np.minimum(wanted, bars.clearances(poses)[0])
+    capsules = Capsules(arm, poses.rows)
+    wanted = capsules.lowest_mm(poses)
+    if capsules.pair_names:
+        wanted = np.minimum(wanted, capsules.clearances(poses)[0])
     np.testing.assert_allclose(LinkClearance(arm).least_mm(independent)[0], wanted, atol=1e-6)
 
 

@@ -324,7 +324,7 @@ def test_what_is_no_file_or_has_no_end_is_no_journal(tmp_path: Path) -> None:
         read_journal(pipe)
     with pytest.raises(OutputError, match="is no file"):
         Journal(pipe, BEGINNING, InstantClock())
-    huge.contact()
+    huge.touch()
     os.truncate(huge, 1 << 34)
     with pytest.raises(TrajectoryFileError, match="is too long"):
         read_journal(huge)
