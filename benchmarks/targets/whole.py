@@ -124,7 +124,8 @@ def phases_and_order(folder: Path, settings: PlanSettings) -> list[Row]:
                 "report",
                 f"{phases.total_s:.1f} s: drawing {phases.drawing_s:.1f},"
                 f" lowering {phases.lowering_s:.1f}, lifting {phases.lifting_s:.1f},"
-                f" travelling {phases.travelling_s:.1f}, resting {phases.resting_s:.1f}; pen up {_pen_up_s(straight):.1f} s in Euclidean order",
+                f" travelling {phases.travelling_s:.1f},"
+                f" resting {phases.resting_s:.1f}; pen up {_pen_up_s(straight):.1f} s in Euclidean order",
             )
         )
     rows.append(
