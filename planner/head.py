@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import IO
 
+from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.counted import counted
 from planner.errors import TrajectoryFileError
 
@@ -64,6 +65,7 @@ class Head:
     svg_to_arm_mm: tuple[float, float, float, float, float, float]
     placement: Placement
     left_out: LeftOut
+    paper: PaperPose
 
     def text(self) -> str:
         """The comment lines."""
@@ -85,6 +87,8 @@ class Head:
             ("duration_s", f"{self.duration_s:.9g}"),
             ("svg_to_arm_mm", " ".join(repr(float(value)) for value in self.svg_to_arm_mm)),
         ]
+        if not self.paper.is_base_plane:
+            entries.append(("paper", _pose(self.paper)))
         if placement.canvas_mm is not None:
             entries.append(("canvas_mm", " ".join(map(_shortest, placement.canvas_mm))))
         entries += [
@@ -101,6 +105,12 @@ class Head:
         if self.left_out != NOTHING_LEFT_OUT:
             entries += [("left_out_mm", f"{self.left_out.length_mm:.6g}"), ("left_out_taps", str(self.left_out.taps))]
         return entries
+
+
+def _pose(paper: PaperPose) -> str:
+    """x, y, z in mm, then yaw and the tilts about x and y in degrees."""
+    angles = (math.degrees(angle) for angle in (paper.yaw_rad, paper.tilt_x_rad, paper.tilt_y_rad))
+    return " ".join(f"{value:.9g}" for value in (paper.x_mm, paper.y_mm, paper.z_mm, *angles))
 
 
 def _shortest(value: float) -> str:
@@ -135,6 +145,10 @@ def read_head(name: str, file: IO[str]) -> tuple[Head, str, int]:
     a, b, c, d, e, f = _numbers(name, found, "svg_to_arm_mm", 6)
     if not line:
         raise TrajectoryFileError(name, max(number - 1, 1), "ends before its column names")
+    paper = BASE_PLANE
+    if "paper" in found:
+        x, y, z, *angles = _numbers(name, found, "paper", 6)
+        paper = PaperPose(x, y, z, *map(math.radians, angles))
     texts = {key: value for key, (value, _) in found.items()}
     head = Head(
         texts.get("arm", ""),
@@ -145,6 +159,7 @@ def read_head(name: str, file: IO[str]) -> tuple[Head, str, int]:
         (a, b, c, d, e, f),
         _placement(name, found),
         _left_out(name, found),
+        paper,
     )
     return head, line, number
 

@@ -28,6 +28,7 @@ from planner.execution.work_chunks import (
     PlanContext,
     TimedStroke,
     make_ready,
+    pen_speed_mm_s,
     pieces_of,
     planned_travel_moves,
     stroke_chunks,
@@ -128,7 +129,7 @@ def _require_bounded(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSett
     drawn_mm = sum(float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in strokes)
     lowered_mm = len(strokes) * arm.pen.clearance_mm + lift_mm
     parts = [
-        (drawn_mm / settings.speed_mm_s, "drawing", "choose a higher --speed"),
+        (drawn_mm / pen_speed_mm_s(arm, settings), "drawing", "choose a higher --speed"),
         (lowered_mm / settings.lowering_speed_mm_s, "lowering the pen", "choose a higher --lowering-speed"),
         (len(strokes) * settings.dwell_s, "resting before strokes", "choose a shorter --dwell"),
     ]
@@ -361,6 +362,7 @@ def _assembled(
         svg_to_arm_mm=(a, b, c, d, e, f),
         placement=placement,
         left_out=left_out,
+        paper=arm.paper,
     )
 
 

@@ -37,19 +37,27 @@ class ConfigurationWeights:
     limits: float = 1.0
 
 
+EVEN_WEIGHTS = ConfigurationWeights()
+
+WHERE_SLACK_IS_TAKEN_UP = ConfigurationWeights(time=1.0, sensitivity=0.0, reversals=0.0, limits=0.0)
+"""What draws best once a calibration has taken the rest away: little motion of joints for a millimetre of pen. What a
+joint that lags makes of the line goes with its speed, and one at rest floats in what is left of its slack."""
+
+
 @dataclass(frozen=True, slots=True)
 class PlanSettings:
     """Settings of one plan.
 
-    speed_mm_s: cap on the pen's speed on the paper. lowering_speed_mm_s: cap on its vertical speed when
-    it comes down. dwell_s: rest on the paper after lowering. lift_mm: travel height, None for the arm's own.
+    speed_mm_s: cap on the pen's speed on the paper, None for the arm's own. lowering_speed_mm_s: cap on its vertical
+    speed when it comes down. dwell_s: rest on the paper after lowering. lift_mm: travel height, None for the arm's own.
+    weights: None for the arm's own.
     """
 
     arm: str = "drawing_arm"
     method: Method = Method.PATH
     rate_hz: float = 100.0
     tolerance_mm: float = 0.05
-    speed_mm_s: float = 80.0
+    speed_mm_s: float | None = None
     lowering_speed_mm_s: float = 30.0
     dwell_s: float = 0.0
     lift_mm: float | None = None
@@ -58,4 +66,4 @@ class PlanSettings:
     margin_mm: float = 5.0
     rotate_deg: float = 0.0
     skip_unreachable: bool = False
-    weights: ConfigurationWeights = ConfigurationWeights()
+    weights: ConfigurationWeights | None = None

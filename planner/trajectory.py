@@ -14,6 +14,7 @@ from typing import IO, cast
 
 import numpy as np
 
+from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from planner.errors import OutputError, TrajectoryFileError
 from planner.files import STANDARD_OUTPUT_DESCRIPTOR, is_standard_output
@@ -31,6 +32,8 @@ from planner.head import (
 
 TRAVELLING = -1
 """Value of `stroke` while the pen is travelling, lifting or lowering."""
+PATTERN = "pattern"
+"""Value of `method` where a trajectory feels for the paper: between strokes it goes below it on purpose."""
 
 _DECIMALS = 9
 _FEWEST_DECIMALS, _MOST_DECIMALS = 6, 17
@@ -53,6 +56,7 @@ class Trajectory:
     first_line: the line that its first sample has in that file, for messages that name lines; None where there is no
         such file: it is then the line that it would be written to.
     placement: what the header tells of where the drawing went. left_out: what was not drawn on purpose.
+    paper: where the paper lies that arm millimetres are counted on, in the frame of the base.
     """
 
     arm: str
@@ -68,6 +72,7 @@ class Trajectory:
     decimals: ByteArray | None = None
     placement: Placement = NOTHING_TOLD
     left_out: LeftOut = NOTHING_LEFT_OUT
+    paper: PaperPose = BASE_PLANE
 
     def line(self, sample: int) -> int:
         """Line of a sample in its file, counted from 1."""
@@ -86,6 +91,7 @@ class Trajectory:
             self.svg_to_arm_mm,
             self.placement,
             self.left_out,
+            self.paper,
         )
 
     @property
@@ -233,6 +239,7 @@ def read_trajectory(source: Path) -> Trajectory:
         decimals=decimals,
         placement=head.placement,
         left_out=head.left_out,
+        paper=head.paper,
     )
 
 

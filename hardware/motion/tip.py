@@ -13,7 +13,7 @@ from planner.arrays import FloatArray
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Tip:
-    """The tip of the pen in the base frame and how it moves with each joint.
+    """The tip of the pen in the paper's frame and how it moves with each joint.
 
     position_mm: (3,). axis: (3,) unit vector along the pen, out of the nib. position_jacobian and
     axis_jacobian: (3, n_joints), per rad or per mm, every joint moving on its own (no coupling applied).
@@ -28,7 +28,8 @@ class Tip:
 def tip_at(arm: Arm, joints: FloatArray) -> Tip:
     """The tip at `joints` (n_joints,), rad or mm, by the product of the standard DH rows and the
     geometric Jacobian: z x (tip - origin) for a revolute joint about z, z for a prismatic one along it."""
-    rotation, origin = np.eye(3), np.zeros(3)
+    to_paper = arm.paper.T_paper_base
+    rotation, origin = to_paper[:3, :3], to_paper[:3, 3]
     joint_axes, joint_origins = [], []
     for joint, value in zip(arm.joints, joints.tolist(), strict=True):
         revolute = joint.kind is JointKind.REVOLUTE
@@ -52,7 +53,8 @@ def tip_at(arm: Arm, joints: FloatArray) -> Tip:
 def link_nodes_mm(arm: Arm, positions: FloatArray) -> FloatArray:
     """(n, 2 n_joints, 3) where links bend at `positions` (n, n_joints), rad or mm: for each joint the end of its
     offset d and the end of its length a, the last of all being the tip. The DH rows' product, as in `tip_at`."""
-    rotation, origin = np.eye(3), np.zeros((len(positions), 3))
+    to_paper = arm.paper.T_paper_base
+    rotation, origin = to_paper[:3, :3], np.repeat(to_paper[None, :3, 3], len(positions), axis=0)
     nodes = []
     for joint, value in zip(arm.joints, positions.T, strict=True):
         revolute = joint.kind is JointKind.REVOLUTE

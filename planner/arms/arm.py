@@ -1,8 +1,8 @@
 """An arm as a value: its Denavit-Hartenberg chain, its limits, and how it keeps a pen to the paper.
 
 Standard DH: row (theta, d, a, alpha) is `Rz(theta) Tz(d) Tx(a) Rx(alpha)`; a revolute joint adds its
-position to theta, a prismatic one to d. The paper is the plane z = 0 of the base frame, and the tip of
-the pen is the origin of the last frame.
+position to theta, a prismatic one to d. The paper is the plane z = 0 of its own frame, which is the base
+frame unless the file says where it lies, and the tip of the pen is the origin of the last frame.
 """
 
 from __future__ import annotations
@@ -14,7 +14,10 @@ from functools import cached_property
 
 import numpy as np
 
+from planner.arms.accuracy import Accuracy
+from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import FloatArray
+from planner.settings import EVEN_WEIGHTS, ConfigurationWeights
 
 
 class JointKind(StrEnum):
@@ -35,13 +38,18 @@ class PenHold(StrEnum):
     """Only the tip is held; the tilt is whatever the chain gives."""
 
 
+SERVO_LAG_S = 0.02
+"""What hobby servos lag, where nothing else is known."""
+
+
 @dataclass(frozen=True, slots=True)
 class Servo:
     """The servo behind a joint, where it is one that is told by pulses.
 
     curve: (position, pulse in us), ascending in position and strictly monotone in pulse, two points where it is a
     straight line. Its positions are the servo's own, rad or mm: `direction` times the joint's. trim_us is added to
-    what the curve gives. backlash: rad or mm.
+    what the curve gives. backlash: the full play, from one end to the other, rad or mm. lag_s: time constant of the
+    first-order lag with which it follows.
     """
 
     channel: int
@@ -52,13 +60,15 @@ class Servo:
     resolution_us: float
     dead_band_us: float
     backlash: float
+    lag_s: float = SERVO_LAG_S
 
 
 @dataclass(frozen=True, slots=True)
 class BusServo:
     """The servo behind a joint, where it is one on a bus: count = count_at_zero + counts_per_unit * position.
 
-    Position in rad or mm; `id` is its number on the bus. backlash: rad or mm.
+    Position in rad or mm; `id` is its number on the bus. backlash, lag_s: as a Servo's. curve: (position, count),
+    ascending in position, in place of the straight line where a calibration found a bent one.
     """
 
     id: int
@@ -67,6 +77,8 @@ class BusServo:
     count_range: tuple[int, int]
     dead_band_counts: float = 0.0
     backlash: float = 0.0
+    curve: tuple[tuple[float, float], ...] | None = None
+    lag_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,12 +125,16 @@ class Coupling:
 
 @dataclass(frozen=True, slots=True)
 class Pen:
-    """How the pen is held and lifted. `tool_axis` is a unit vector of the last frame that points out of the nib."""
+    """How the pen is held and lifted. `tool_axis` is a unit vector of the last frame that points out of the nib.
+
+    speed_mm_s: on the paper, where nothing else is asked for: how fast the arm still draws well.
+    """
 
     hold: PenHold
     tool_axis: tuple[float, float, float]
     lift_mm: float
     clearance_mm: float
+    speed_mm_s: float = 80.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +154,9 @@ class Workspace:
 class Arm:
     """A checked arm. Joint arrays are in chain order, in rad or mm; closed_form names its family, if any.
 
-    park: (n_joints,) where the arm rests when it is not used, if the builder says.
+    park: (n_joints,) where the arm rests when it is not used, if the builder says. paper: where the paper lies.
+    accuracy: what a calibration left unknown, where there was one. weights: what spare joints are spent on, where
+    nothing else is asked for.
     """
 
     name: str
@@ -149,6 +167,9 @@ class Arm:
     workspace: Workspace
     closed_form: str | None = None
     park: FloatArray | None = None
+    paper: PaperPose = BASE_PLANE
+    accuracy: Accuracy | None = None
+    weights: ConfigurationWeights = EVEN_WEIGHTS
 
     @property
     def n_joints(self) -> int:

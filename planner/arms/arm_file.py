@@ -13,8 +13,10 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
+from planner.arms.accuracy import Accuracy
 from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Workspace
-from planner.arms.file_section import LONGEST_MM, Length, Limit, Number, Section, Size, told
+from planner.arms.file_section import LONGEST_MM, Length, Limit, NotNegative, Number, Section, Size, told
+from planner.arms.paper_pose import PaperPose
 from planner.arms.servo_section import (
     SlidingBusSection,
     SlidingServoSection,
@@ -23,6 +25,7 @@ from planner.arms.servo_section import (
 )
 from planner.arrays import FloatArray, frozen
 from planner.errors import ArmFileError, UnknownArm
+from planner.settings import ConfigurationWeights
 
 DEFAULT_ARM = "drawing_arm"
 
@@ -42,6 +45,7 @@ Name = Annotated[str, Field(max_length=64), AfterValidator(_is_column_name)]
 _MOST_JOINTS = 16
 _MOST_BYTES = 1_000_000
 _MOST_FAULTS = 20
+_Tilt = Annotated[float, Field(gt=-90, lt=90)]
 
 
 class _JointBase(Section):
@@ -112,6 +116,7 @@ class _PenSection(Section):
     tool_axis: Annotated[list[Number], Field(min_length=3, max_length=3)] = Field(default=[1.0, 0.0, 0.0])
     lift_mm: Size
     clearance_mm: Size = 1.0
+    speed_mm_s: Limit = 80.0
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
@@ -127,6 +132,51 @@ class _WorkspaceSection(Section):
     min_tip_speed_mm_s: Limit = 80.0
 
 
+class _PaperSection(Section):
+    x_mm: Number = 0.0
+    y_mm: Number = 0.0
+    z_mm: Number = 0.0
+    yaw_deg: Number = 0.0
+    tilt_x_deg: _Tilt = 0.0
+    tilt_y_deg: _Tilt = 0.0
+
+    def pose(self) -> PaperPose:
+        return PaperPose(
+            self.x_mm,
+            self.y_mm,
+            self.z_mm,
+            math.radians(self.yaw_deg),
+            math.radians(self.tilt_x_deg),
+            math.radians(self.tilt_y_deg),
+        )
+
+
+class _AccuracySection(Section):
+    marks: Annotated[int, Field(ge=0)]
+    tip_mm: NotNegative
+    height_mm: NotNegative
+    slack: dict[str, NotNegative]
+
+
+_Weight = Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False)]
+
+
+class _ConfigurationsSection(Section):
+    time: _Weight = 1.0
+    sensitivity: _Weight = 1.0
+    reversals: _Weight = 1.0
+    limits: _Weight = 1.0
+
+    @model_validator(mode="after")
+    def _weighs_something(self) -> Self:
+        if not any((self.time, self.sensitivity, self.reversals, self.limits)):
+            raise ValueError("one of time, sensitivity, reversals and limits has to be more than 0")
+        return self
+
+    def weights(self) -> ConfigurationWeights:
+        return ConfigurationWeights(self.time, self.sensitivity, self.reversals, self.limits)
+
+
 class _ArmSection(Section):
     name: Name
     source: str
@@ -139,6 +189,9 @@ class _ArmSection(Section):
     ]
     coupling: list[_CouplingSection] = Field(default=[])
     park: dict[str, Number] | None = None
+    paper: _PaperSection = _PaperSection()
+    accuracy: _AccuracySection | None = None
+    configurations: _ConfigurationsSection = _ConfigurationsSection()
 
 
 def arms_folder() -> Path:
@@ -259,6 +312,13 @@ def _contradictions(section: _ArmSection) -> list[str]:
     if section.pen.hold == "coupling" and not section.coupling:
         faults.append("pen.hold: 'coupling' needs at least one [[coupling]]")
     faults += _shared_lines(section)
+    if section.accuracy is not None:
+        faults += [f"accuracy.slack.{name}: missing" for name in names if name not in section.accuracy.slack]
+        faults += [
+            f"accuracy.slack: there is no joint '{name}' (joints: {', '.join(names)})"
+            for name in section.accuracy.slack
+            if name not in names
+        ]
     if section.park is not None:
         faults += _misparked(section.park, [name for name in names if name not in mimic], names)
     return faults
@@ -330,6 +390,7 @@ def _joint(place: int, section: _RevoluteSection | _PrismaticSection) -> Joint:
 
 def _arm(section: _ArmSection) -> Arm:
     names = [joint.name for joint in section.joints]
+    joints = tuple(_joint(place, joint) for place, joint in enumerate(section.joints))
     couplings = tuple(
         Coupling(
             names.index(coupling.joint),
@@ -343,11 +404,25 @@ def _arm(section: _ArmSection) -> Arm:
     return Arm(
         name=section.name,
         source=section.source,
-        joints=tuple(_joint(place, joint) for place, joint in enumerate(section.joints)),
+        joints=joints,
         couplings=couplings,
-        pen=Pen(PenHold(section.pen.hold), (x, y, z), section.pen.lift_mm, section.pen.clearance_mm),
+        pen=Pen(
+            PenHold(section.pen.hold), (x, y, z), section.pen.lift_mm, section.pen.clearance_mm, section.pen.speed_mm_s
+        ),
         workspace=Workspace(section.workspace.inner_radius_mm, section.workspace.min_tip_speed_mm_s),
         closed_form=section.closed_form,
+        paper=section.paper.pose(),
+        weights=section.configurations.weights(),
+        accuracy=None if section.accuracy is None else _accuracy(section.accuracy, joints),
+    )
+
+
+def _accuracy(section: _AccuracySection, joints: tuple[Joint, ...]) -> Accuracy:
+    return Accuracy(
+        section.marks,
+        section.tip_mm,
+        section.height_mm,
+        tuple(section.slack[joint.name] * joint.per_file_unit for joint in joints),
     )
 
 

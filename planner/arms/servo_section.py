@@ -13,7 +13,7 @@ from typing import Annotated, Literal, Self, TypeVar
 
 from pydantic import AfterValidator, Field, model_validator
 
-from planner.arms.arm import BusServo, Servo
+from planner.arms.arm import SERVO_LAG_S, BusServo, Servo
 from planner.arms.file_section import NotNegative, Number, Section
 
 _End = TypeVar("_End", int, float)
@@ -57,6 +57,7 @@ class _ServoSection(Section):
     pulse_range_us: _PulseRange
     resolution_us: NotNegative = 1.0
     dead_band_us: NotNegative = 0.0
+    lag_s: NotNegative = SERVO_LAG_S
 
     @property
     @abstractmethod
@@ -100,6 +101,7 @@ class _ServoSection(Section):
             resolution_us=self.resolution_us,
             dead_band_us=self.dead_band_us,
             backlash=self.play * per_file_unit,
+            lag_s=self.lag_s,
         )
 
 
@@ -133,7 +135,9 @@ class _BusSection(Section):
     id: Annotated[int, Field(ge=0, le=252)]
     count_at_zero: Number
     count_range: _CountRange
+    table: _Table | None = None
     dead_band_counts: NotNegative = 0.0
+    lag_s: NotNegative = 0.0
 
     @property
     @abstractmethod
@@ -153,6 +157,7 @@ class _BusSection(Section):
 
     def servo(self, per_file_unit: float) -> BusServo:
         low, high = self.count_range
+        rows = None if self.table is None else tuple((at * per_file_unit, count) for at, count in self.table)
         return BusServo(
             self.id,
             self.count_at_zero,
@@ -160,6 +165,8 @@ class _BusSection(Section):
             (low, high),
             self.dead_band_counts,
             self.play * per_file_unit,
+            rows,
+            self.lag_s,
         )
 
 

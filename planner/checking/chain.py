@@ -14,8 +14,8 @@ from planner.arrays import FloatArray
 class ChainPoses:
     """Where the chain is in n configurations.
 
-    tip_mm: (3, n) the origin of the last frame. lowest_mm: (n,) the height of the lowest node of the
-    links, the tip aside: links are straight between nodes, so no part of one is lower.
+    All in the paper's frame but the tool. tip_mm: (3, n) the origin of the last frame. lowest_mm: (n,) the height of
+    the lowest node of the links, the tip aside: links are straight between nodes, so no part of one is lower.
     tool: (3, n) direction of `pen.tool_axis` in the base frame. nodes_mm: (n_nodes, 3, n) the nodes, from the base's
     origin to the tip; rows: of each segment between two of them, the row that it belongs to.
     """
@@ -34,8 +34,13 @@ def chain_poses(arm: Arm, positions: FloatArray) -> ChainPoses:
     and after Tx(a); a displacement that is always zero makes no node.
     """
     n = len(positions)
-    x, y, z = (np.repeat(axis[:, np.newaxis], n, axis=1) for axis in np.eye(3))
-    node = np.zeros((3, n))
+    yaw, tilt_y, tilt_x = arm.paper.yaw_rad, arm.paper.tilt_y_rad, arm.paper.tilt_x_rad
+    # What the base is to the paper: the paper's place and turns undone, the last one first.
+    base = _undo_turns(
+        np.column_stack((np.eye(3), [-arm.paper.x_mm, -arm.paper.y_mm, -arm.paper.z_mm])), yaw, tilt_y, tilt_x
+    )
+    x, y, z, node = (np.repeat(column[:, np.newaxis], n, axis=1) for column in base.T)
+    upright = base[:, :3]
     nodes, rows = [node], []
     for row, (joint, position) in enumerate(zip(arm.joints, positions.T, strict=True)):
         slides = joint.kind is JointKind.PRISMATIC
@@ -54,5 +59,16 @@ def chain_poses(arm: Arm, positions: FloatArray) -> ChainPoses:
         y, z = cosine * y + sine * z, cosine * z - sine * y
     along_x, along_y, along_z = arm.pen.tool_axis
     corners = np.stack(nodes)
-    lowest = (corners[:-1] if rows else corners)[:, 2].min(axis=0)
-    return ChainPoses(node, lowest, along_x * x + along_y * y + along_z * z, corners, tuple(rows))
+    heights = (corners[:-1] if rows else corners)[:, 2].copy()
+    heights[0] = np.maximum(heights[0], 0.0)  # the base stands beside the paper
+    lowest = heights.min(axis=0)
+    return ChainPoses(node, lowest, upright.T @ (along_x * x + along_y * y + along_z * z), corners, tuple(rows))
+
+
+def _undo_turns(vectors: FloatArray, yaw: float, tilt_y: float, tilt_x: float) -> FloatArray:
+    """(3, n) vectors of the base frame as the paper's, which is turned by Rz(yaw), then Ry(tilt_y), then Rx(tilt_x)."""
+    a, b, c = vectors
+    a, b = np.cos(yaw) * a + np.sin(yaw) * b, np.cos(yaw) * b - np.sin(yaw) * a
+    a, c = np.cos(tilt_y) * a - np.sin(tilt_y) * c, np.cos(tilt_y) * c + np.sin(tilt_y) * a
+    b, c = np.cos(tilt_x) * b + np.sin(tilt_x) * c, np.cos(tilt_x) * c - np.sin(tilt_x) * b
+    return np.stack((a, b, c))

@@ -19,7 +19,10 @@ from planner.checking.pen import (
     upright,
 )
 from planner.drawing.drawing import Drawing
-from planner.trajectory import Trajectory
+from planner.trajectory import PATTERN, Trajectory
+
+FELT_MM = 4.5
+"""How deep below the paper a calibration pattern may feel for it."""
 
 
 def check_trajectory(
@@ -36,6 +39,7 @@ def check_trajectory(
         return CheckResult((fitting,))
     per_step = points_per_step(trajectory.rate_hz)
     sweeps = [sweep(trajectory, arm, interpolation, per_step) for interpolation in Interpolation]
+    feels = trajectory.method == PATTERN  # for the paper, between strokes, on purpose
     findings = [
         fitting,
         *rest_at_the_ends(trajectory, arm),
@@ -46,9 +50,9 @@ def check_trajectory(
         *on_the_paper(trajectory, sweeps, tolerance_mm),
         *pen_as_the_tip(trajectory, arm, sweeps[0]),
         *upright(trajectory, arm, sweeps),
-        *above_the_paper(trajectory, sweeps, tolerance_mm),
+        *above_the_paper(trajectory, sweeps, FELT_MM if feels else tolerance_mm),
         *links_apart(trajectory, sweeps, tolerance_mm),
-        *straight_up_and_down(trajectory, sweeps, arm.pen.clearance_mm, tolerance_mm),
+        *([] if feels else straight_up_and_down(trajectory, sweeps, arm.pen.clearance_mm, tolerance_mm)),
         *lift_notes(trajectory, arm, sweeps[0], tolerance_mm),
     ]
     findings += within_the_canvas(trajectory, sweeps[0], tolerance_mm)

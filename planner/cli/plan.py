@@ -31,6 +31,9 @@ Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a t
 other commands (each has its own --help; a drawing of that name is planned as ./NAME):
   plan batch FOLDER         plan every drawing of a folder
   plan run traj.csv         play a trajectory on the simulated arm
+  plan pattern --arm ARM    a trajectory of marks to calibrate an arm with
+  plan calibrate ARM        an arm file from marks that the arm made
+  plan predict traj.csv     how well an arm is going to draw
   plan ports                list the serial devices that are plugged in
   plan check traj.csv       an independent check result on a trajectory
   plan plot traj.csv -o F   pictures of a trajectory
@@ -130,7 +133,10 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
 
 def _parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
-    parser.usage = "plan DRAWING.svg [-o traj.csv] [options]\n       plan batch|run|ports|check|plot|compare|arm ..."
+    parser.usage = (
+        "plan DRAWING.svg [-o traj.csv] [options]\n"
+        "       plan batch|run|pattern|measure|calibrate|predict|ports|check|plot|compare|arm ..."
+    )
     parser.add_argument(
         "drawing", type=input_file, metavar="DRAWING.svg", help="the drawing, gzipped or not; - for standard input"
     )
@@ -202,7 +208,7 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         type=speed_mm_s,
         default=default.speed_mm_s,
         metavar="SPEED",
-        help="fastest motion of the pen on the paper (default: %(default)g mm/s)",
+        help="fastest motion of the pen on the paper (default: the arm's own)",
     )
     motion.add_argument(
         "--lift",

@@ -93,7 +93,7 @@ def _result(
     method: ComparedMethod, arm: Arm, targets: Targets, start: FloatArray, settings: PlanSettings
 ) -> MethodResult:
     try:
-        measured = measure(method, arm, settings.weights, targets, start)
+        measured = measure(method, arm, settings.weights or arm.weights, targets, start)
     except PlannerError as error:
         return MethodResult(method, Figures(), None, refusal=str(error))
     missed = np.flatnonzero(~measured.solved)

@@ -245,10 +245,16 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
     return timed
 
 
+def pen_speed_mm_s(arm: Arm, settings: PlanSettings) -> float:
+    """The cap on the pen's speed on the paper: what is asked for, or the arm's own."""
+    return settings.speed_mm_s or arm.pen.speed_mm_s
+
+
 def pen_speed_limit(arm: Arm, paths: PenPaths, splines: JointPaths, settings: PlanSettings) -> FloatArray:
     """(total cells, n_fractions) cap on dsigma/dt at FRACTIONS of every cell: the pen's own speed, and what keeps it
     near its path between samples."""
-    chords = rate_limit(paths, FRACTIONS, settings.speed_mm_s, SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz)
+    speed_mm_s = pen_speed_mm_s(arm, settings)
+    chords = rate_limit(paths, FRACTIONS, speed_mm_s, SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz)
     bulges = chord_error_limit(kinematics_of(arm), splines, CHORD_SHARE * settings.tolerance_mm, settings.rate_hz)
     return np.minimum(chords, bulges[:, None])
 

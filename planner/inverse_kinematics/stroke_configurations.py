@@ -26,7 +26,6 @@ from planner.ragged import starts_of
 from planner.redundancy.configuration_map import branch_references, configuration_branches, configuration_map_of
 from planner.settings import ConfigurationWeights, Method
 
-_WEIGHTS = ConfigurationWeights()
 _HOME = ConfigurationWeights(time=0.1, sensitivity=0.0, reversals=0.0, limits=1.0)
 """Sequential methods start from a home that is well inside the joint limits."""
 
@@ -51,7 +50,7 @@ class InfeasiblePath:
 
 
 def configurations_at(
-    arm: Arm, method: Method, tips_mm: FloatArray, weights: ConfigurationWeights = _WEIGHTS
+    arm: Arm, method: Method, tips_mm: FloatArray, weights: ConfigurationWeights | None = None
 ) -> FloatArray:
     """(n, n_independent) reference configurations for single tips (n, 3), each by itself."""
     if method is Method.PATH:
@@ -77,7 +76,7 @@ def exact_configurations(
 
 
 def joint_paths(
-    arm: Arm, method: Method, paths: PenPaths, weights: ConfigurationWeights = _WEIGHTS
+    arm: Arm, method: Method, paths: PenPaths, weights: ConfigurationWeights | None = None
 ) -> tuple[JointPaths, list[InfeasiblePath]]:
     """Joint splines along pen paths on the paper, and the paths that cannot be followed, each with where."""
     starts = starts_of(paths.n_cells)

@@ -42,7 +42,8 @@ class Kinematics:
         """The horizontal components of the tool axis that are not zero by construction."""
         turn = self.joints[0] if self.arm.joints[0].kind is JointKind.REVOLUTE else 0
         c, s = casadi.cos(turn), casadi.sin(turn)
-        components = casadi.vertcat(c * self.axis[0] + s * self.axis[1], c * self.axis[1] - s * self.axis[0])
+        axis = casadi.DM(self.arm.paper.T_base_paper[:3, :3]) @ self.axis
+        components = casadi.vertcat(c * axis[0] + s * axis[1], c * axis[1] - s * axis[0])
         probe = casadi.Function("probe", [self.independent], [components])
         configurations = np.random.default_rng(0).uniform(-np.pi, np.pi, (self.n_independent, _PROBES))
         largest = np.abs(np.array(probe.map(_PROBES)(configurations))).max(axis=1)
@@ -90,7 +91,7 @@ class Kinematics:
         """Tip, tool axis and the geometric 6 x n Jacobian at symbolic joints, each taken as independent."""
         frames, _ = _chain(self.arm, joints)
         tip = frames[-1][:3, 3]
-        axes = [casadi.SX([0, 0, 1]), *[frame[:3, 2] for frame in frames[:-1]]]
+        axes = [casadi.SX(self.arm.paper.T_paper_base[:3, 2]), *[frame[:3, 2] for frame in frames[:-1]]]
         angular = casadi.horzcat(
             *[
                 axis if joint.kind is JointKind.REVOLUTE else casadi.SX.zeros(3)
@@ -101,7 +102,7 @@ class Kinematics:
         return tip, pointing, casadi.vertcat(casadi.jacobian(tip, joints), angular)
 
     def pose(self, independent: FloatArray) -> FloatArray:
-        """T_base_pen (n, 4, 4), mm, of configurations (n, n_independent)."""
+        """T_paper_pen (n, 4, 4), mm, of configurations (n, n_independent)."""
         return self._pose(independent)[0]
 
     def tip_mm(self, independent: FloatArray) -> FloatArray:
@@ -109,7 +110,7 @@ class Kinematics:
         return self._tip(independent)[0]
 
     def tool_axis(self, independent: FloatArray) -> FloatArray:
-        """Unit vector (n, 3) out of the nib, in the base frame, of configurations (n, n_independent)."""
+        """Unit vector (n, 3) out of the nib, in the paper's frame, of configurations (n, n_independent)."""
         return self._axis(independent)[0]
 
     def nodes_mm(self, independent: FloatArray) -> FloatArray:
@@ -140,7 +141,7 @@ class Kinematics:
 
 def _chain(arm: Arm, joints: casadi.SX) -> tuple[list[casadi.SX], list[casadi.SX]]:
     """Frames 1..n as 4 x 4 matrices, and the corners of the link chain as points."""
-    frame = casadi.SX.eye(4)
+    frame = casadi.SX.eye(4) if arm.paper.is_base_plane else casadi.SX(arm.paper.T_paper_base)
     frames, corners = [], []
     for index, joint in enumerate(arm.joints):
         revolute = joint.kind is JointKind.REVOLUTE

@@ -4,18 +4,20 @@ An arm whose first joint turns about the vertical meets a paper point (rho, azim
 (rho, 0) turned by the azimuth. So the arm's redundancy has to be decided along one line only, from
 the inner to the outer radius, and the choice is global: a dynamic program over sampled configurations finds
 the branch and the coarse course, further ones over its neighbours polish it. The same paper point
-is then always drawn with the same configuration, whatever the drawing.
+is then always drawn with the same configuration, whatever the drawing. Where the paper does not lie square to the base
+axis, the map is that of a level paper of the same height, and the configurations nearest to it are taken.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
 
 from planner.arms.arm import Arm, JointKind, PenHold
+from planner.arms.paper_pose import BASE_PLANE
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.errors import ArmFileError, PlanError
 from planner.kinematics.chain import Kinematics, kinematics_of
@@ -32,8 +34,10 @@ from planner.redundancy.samples import COARSE_STEP_MM, on_ray, sampled_rays, str
 from planner.settings import ConfigurationWeights
 from planner.spline import evaluate_at, interpolating
 
-_WEIGHTS = ConfigurationWeights()
 _UPRIGHT_PROBES = 16
+_UPRIGHT_DEG = 3.0
+"""A real arm leaves its pen so far from upright; what is beyond is a mistake in its file."""
+_STEEPEST_RAD = float(np.radians(20.0))
 _FEWEST_RADII = 2
 """Sampled radii that a further branch has to add."""
 _NODES = 81
@@ -48,13 +52,15 @@ _EDGE_MM = 1.0
 
 @dataclass(frozen=True, eq=False)
 class ConfigurationMap:
-    """Configurations along the ray of azimuth zero, pen on the paper.
+    """Configurations along the ray of azimuth zero, pen on the paper, which is taken to be level.
 
+    level: the arm on the level paper that the map was made for.
     radii_mm: (n,) increasing, laid out evenly over the square root of the distance from just beyond the last;
     configurations: (n, n_independent) of the independent joints, rad or mm.
     """
 
     arm: Arm
+    level: Arm
     radii_mm: FloatArray
     configurations: FloatArray
 
@@ -76,22 +82,27 @@ class ConfigurationMap:
         sigma: FloatArray = (first - np.sqrt(edge - inside)) / (first - last) * (len(self.radii_mm) - 1)
         return sigma
 
+    def polar(self, tip_mm: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Distances from the base axis (...) and azimuths about it (...) of points of the paper's frame (..., 3)."""
+        at_mm = tip_mm if self.arm.paper.is_base_plane else self.arm.paper.to_base(tip_mm)
+        return np.hypot(at_mm[..., 0], at_mm[..., 1]), np.arctan2(at_mm[..., 1], at_mm[..., 0])
+
     def reference(self, tip_mm: FloatArray) -> FloatArray:
         """(n, n_independent) field configurations at tips (n, 3), whatever their height; outside the map's radii,
         those of its edge."""
-        radius = np.hypot(tip_mm[:, 0], tip_mm[:, 1])
+        radius, azimuth = self.polar(tip_mm)
         sigma = self._sigma(radius)
         cell = np.clip(sigma.astype(np.int64), 0, len(self.radii_mm) - 2)
         reference = evaluate_at(self._controls, cell, sigma - cell, _DEGREE)
-        reference[:, 0] += np.arctan2(tip_mm[:, 1], tip_mm[:, 0])
+        reference[:, 0] += azimuth
         return reference
 
     def reaches(self, points_mm: FloatArray) -> BoolArray:
         """(n,) whether points of the paper (n, 2) lie within the map's radii and the joint limits."""
-        radius = np.hypot(*points_mm.T)
+        tips_mm = np.column_stack((points_mm, np.zeros(len(points_mm))))
+        radius, _ = self.polar(tips_mm)
         reached: BoolArray = (radius >= self.radii_mm[0]) & (radius <= self.radii_mm[-1])
-        near = points_mm[reached]
-        reached[reached] = self.configurations_at(np.column_stack((near, np.zeros(len(near)))))[1]
+        reached[reached] = self.configurations_at(tips_mm[reached])[1]
         return reached
 
     def configurations_at(self, tip_mm: FloatArray) -> tuple[FloatArray, BoolArray]:
@@ -110,20 +121,39 @@ def within_limits(arm: Arm, independent: FloatArray, slack: float = 1e-9, first_
     return kept
 
 
-def configuration_map_of(arm: Arm, weights: ConfigurationWeights = _WEIGHTS) -> ConfigurationMap:
+@lru_cache(maxsize=16)
+def levelled(arm: Arm) -> Arm:
+    """The arm on a level paper of the same height at the base axis: itself, where its paper is the base plane. A paper
+    that is higher is a first row that is shorter. Errors: PlanError where the paper is far from level."""
+    if arm.paper.is_base_plane:
+        return arm
+    T = arm.paper.T_base_paper
+    if T[2, 2] < np.cos(_STEEPEST_RAD):
+        raise PlanError(
+            f"arm {arm.name}: method 'path' needs a paper within {np.degrees(_STEEPEST_RAD):g} degrees of level"
+        )
+    height_mm = float(T[2, 3] + (T[0, 2] * T[0, 3] + T[1, 2] * T[1, 3]) / T[2, 2])
+    first = replace(arm.joints[0], d_mm=arm.joints[0].d_mm - height_mm)
+    return replace(arm, joints=(first, *arm.joints[1:]), paper=BASE_PLANE)
+
+
+def configuration_map_of(arm: Arm, weights: ConfigurationWeights | None = None) -> ConfigurationMap:
     """The field of an arm, computed once. Errors: PlanError where the arm cannot have one, ArmFileError where its file
     contradicts itself."""
-    return _branches(arm, weights)[0]
+    return configuration_branches(arm, weights)[0]
 
 
-def configuration_branches(arm: Arm, weights: ConfigurationWeights = _WEIGHTS) -> tuple[ConfigurationMap, ...]:
+def configuration_branches(arm: Arm, weights: ConfigurationWeights | None = None) -> tuple[ConfigurationMap, ...]:
     """The field that reaches over most radii, then maps in other branches, each over as many as it can of those that
     the ones before leave out. Nearly all arms have one. Errors: as `configuration_map_of`."""
-    return _branches(arm, weights)
+    return _branches(arm, weights or arm.weights)
 
 
 @lru_cache(maxsize=16)
 def _branches(arm: Arm, weights: ConfigurationWeights) -> tuple[ConfigurationMap, ...]:
+    level = levelled(arm)
+    if level is not arm:
+        return tuple(replace(branch, arm=arm) for branch in _branches(level, weights))
     cost, radii, samples = choice_of_configurations(arm, weights)
     left_out = np.array([len(configurations) > 0 for configurations in samples])
     branches: list[ConfigurationMap] = []
@@ -148,7 +178,7 @@ def _configuration_map(
     )
     if not exact.all():
         raise PlanError(f"arm {arm.name}: the configuration map did not converge")
-    return ConfigurationMap(arm, nodes, configuration_path)
+    return ConfigurationMap(arm, arm, nodes, configuration_path)
 
 
 def branch_references(branches: Sequence[ConfigurationMap], tips_mm: FloatArray, starts: IntArray) -> FloatArray:
@@ -234,7 +264,7 @@ def _require_upright(kinematics: Kinematics) -> None:
         (_UPRIGHT_PROBES, kinematics.n_independent),
     )
     tilt = float(np.degrees(np.arccos(np.clip(-kinematics.tool_axis(configurations)[:, 2], -1.0, 1.0))).max())
-    if tilt > 0.01:
+    if tilt > _UPRIGHT_DEG:
         raise ArmFileError(
             arm.name,
             [

@@ -72,7 +72,8 @@ def _keeps_limits(kinematics: Kinematics, independent: FloatArray) -> BoolArray:
 
 
 def _links_above_paper(kinematics: Kinematics, independent: FloatArray) -> BoolArray:
-    above: BoolArray = np.all(kinematics.nodes_mm(independent)[:, :-1, 2] >= -1e-6, axis=1)
+    base_mm = float(kinematics.arm.paper.T_paper_base[2, 3])  # the base may stand lower than the paper
+    above: BoolArray = np.all(kinematics.nodes_mm(independent)[:, :-1, 2] >= min(base_mm, 0.0) - 1e-6, axis=1)
     return above
 
 

@@ -16,6 +16,7 @@ from planner.checking.chain import chain_poses
 from planner.checking.check_result import CheckResult
 from planner.drawing.drawing import Drawing
 from planner.errors import OutputError
+from planner.execution.work_chunks import pen_speed_mm_s
 from planner.plots.look import Theme
 from planner.report.markup import Markup, clean, definitions, element, joined, section, table
 from planner.report.pictures import pictures
@@ -80,7 +81,9 @@ def report_page(planned: Planned) -> Markup:
         _warnings(summary.warnings),
         section("Pictures", *_figures(planned, tip_mm)),
         section("Joints", *_joints(trajectory, planned.arm)),
-        section("Strokes", *_strokes(stroke_figures(trajectory, tip_mm), planned.settings.speed_mm_s)),
+        section(
+            "Strokes", *_strokes(stroke_figures(trajectory, tip_mm), pen_speed_mm_s(planned.arm, planned.settings))
+        ),
         section("Check", *_check(planned.check_result)),
         section("How it was made", *_making(planned)),
     )
@@ -242,7 +245,7 @@ def _check(check_result: CheckResult) -> list[Markup]:
 
 def _making(planned: Planned) -> list[Markup]:
     settings = planned.settings
-    weights = ", ".join(f"{name} {value:g}" for name, value in asdict(settings.weights).items())
+    weights = ", ".join(f"{name} {value:g}" for name, value in asdict(settings.weights or planned.arm.weights).items())
     lift_mm = planned.arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
     used = [
         ("arm", f"{planned.arm.name}: {planned.arm.source}"),
@@ -250,7 +253,7 @@ def _making(planned: Planned) -> list[Markup]:
         ("weights", weights),
         ("rate", f"{settings.rate_hz:g} Hz"),
         ("tolerance", f"{settings.tolerance_mm:g} mm"),
-        ("pen's speed on paper, at most", f"{settings.speed_mm_s:g} mm/s"),
+        ("pen's speed on paper, at most", f"{pen_speed_mm_s(planned.arm, settings):g} mm/s"),
         ("lowering, at most", f"{settings.lowering_speed_mm_s:g} mm/s"),
         ("rest before a stroke", f"{settings.dwell_s:g} s"),
         ("lift", f"{lift_mm:g} mm"),

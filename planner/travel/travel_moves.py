@@ -106,7 +106,8 @@ def plan_travel_moves(
 ) -> list[TravelMove]:
     """Travel moves from each `leave` to the `meet` of the same index. Where one of the two is None the travel move
     begins, or ends, at the lift height above the other, as at the two ends of a drawing."""
-    shapes = [_Shape.of(rules, one, other) for one, other in zip(start, end, strict=True)]
+    axis_mm = kinematics.arm.paper.T_paper_base[:2, 3]
+    shapes = [_Shape.of(rules, axis_mm, one, other) for one, other in zip(start, end, strict=True)]
     lifts = quickest_lifts(kinematics, limits.jerk, np.concatenate([shape.configurations for shape in shapes]))
     lifted = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
     moves = _along(kinematics, limits, rules, lifted)
@@ -177,9 +178,10 @@ def _held(kinematics: Kinematics, limits: Limits, plans: Sequence[_Timed], rules
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Shape:
-    """The two ends of a travel move in (radius, azimuth), with the independent joints there, how they raise the pen by
-    a mm, and the heights there."""
+    """The two ends of a travel move in (radius, azimuth) about the base axis, which meets the paper at `axis_mm`, with
+    the independent joints there, how they raise the pen by a mm, and the heights there."""
 
+    axis_mm: FloatArray
     polar: FloatArray
     configurations: FloatArray
     lifts: FloatArray
@@ -187,13 +189,14 @@ class _Shape:
     to_mm: float
 
     @staticmethod
-    def of(rules: TravelRules, start: Contact | None, end: Contact | None) -> _Shape:
+    def of(rules: TravelRules, axis_mm: FloatArray, start: Contact | None, end: Contact | None) -> _Shape:
         one, other = start or end, end or start
         assert one is not None and other is not None
-        tips = np.stack((one.tip_mm, other.tip_mm))
+        tips = np.stack((one.tip_mm, other.tip_mm)) - axis_mm
         polar = np.column_stack((np.hypot(*tips.T), np.arctan2(tips[:, 1], tips[:, 0])))
         configurations = np.stack((one.configuration, other.configuration))
         return _Shape(
+            axis_mm,
             polar,
             configurations,
             np.zeros_like(configurations),
@@ -219,7 +222,8 @@ class _Shape:
     def tip_mm(self, along: FloatArray, height_mm: FloatArray) -> FloatArray:
         """(n, 3) at fractions of the way and heights."""
         radius, azimuth = (self.polar[0] + along[:, None] * (self.polar[1] - self.polar[0])).T
-        return np.column_stack((radius * np.cos(azimuth), radius * np.sin(azimuth), height_mm))
+        x_mm, y_mm = self.axis_mm
+        return np.column_stack((x_mm + radius * np.cos(azimuth), y_mm + radius * np.sin(azimuth), height_mm))
 
     def reference(self, along: FloatArray, height_mm: FloatArray) -> FloatArray:
         """(n, n_independent) independent joints near which the configuration is sought at fractions of the way and

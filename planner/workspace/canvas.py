@@ -7,7 +7,7 @@ the bottom: arm x = far side - Y, arm y = left side - X.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import casadi
@@ -110,9 +110,9 @@ def geometric_reach_mm(arm: Arm) -> float:
     """Largest distance from the base axis at which the pen, held as the arm holds it, touches the paper, limits of
     turning joints aside: how far a joint slides is a length of the arm. For the drawing arm
     sqrt((L2+L3+L4)^2 - (L5-L1)^2): minus, where the documents print plus."""
-    kinematics = kinematics_of(arm)
     branches = configuration_branches(arm)
     outermost = max(branches, key=lambda branch: branch.radii_mm[-1])
+    kinematics = kinematics_of(outermost.level)
     solver = casadi.nlpsol(
         "reach",
         "ipopt",
@@ -178,27 +178,29 @@ def canvas_of(arm: Arm, kind: CanvasKind, lift_mm: float) -> Canvas:
 class _Sector:
     """Where field configurations are within limits: for each radius an interval of azimuth."""
 
+    configuration_map: ConfigurationMap
     radii_mm: FloatArray
     from_rad: FloatArray
     to_rad: FloatArray
 
     @staticmethod
     def of(configuration_map: ConfigurationMap, lift_mm: float) -> _Sector:
-        arm = configuration_map.arm
+        arm = configuration_map.level
+        level = replace(configuration_map, arm=arm)
         radii = np.linspace(configuration_map.radii_mm[0], configuration_map.radii_mm[-1], _RADIAL_STEPS)
         low, high = np.full(len(radii), -np.pi / 2), np.full(len(radii), np.pi / 2)
         for height in np.linspace(0.0, lift_mm, _HEIGHTS):
             tips = np.column_stack((radii, np.zeros_like(radii), np.full_like(radii, height)))
-            independent, exact = project(kinematics_of(arm), configuration_map.reference(tips), tips)
+            independent, exact = project(kinematics_of(arm), level.reference(tips), tips)
             good = exact & within_limits(arm, independent, first_joint=False)
             good &= link_clearance(arm).least_mm(independent)[0] >= KEPT_MM
             low = np.where(good, np.maximum(low, arm.minimum[0] - independent[:, 0]), np.inf)
             high = np.where(good, np.minimum(high, arm.maximum[0] - independent[:, 0]), -np.inf)
-        return _Sector(radii, low, high)
+        return _Sector(configuration_map, radii, low, high)
 
     def contains(self, points_mm: FloatArray) -> BoolArray:
-        radius = np.hypot(points_mm[..., 0], points_mm[..., 1])
-        azimuth = np.arctan2(points_mm[..., 1], points_mm[..., 0])
+        tips_mm = np.concatenate((points_mm, np.zeros_like(points_mm[..., :1])), axis=-1)
+        radius, azimuth = self.configuration_map.polar(tips_mm)
         after = np.clip(np.searchsorted(self.radii_mm, radius), 1, len(self.radii_mm) - 1)
         inside: BoolArray = (radius >= self.radii_mm[0]) & (radius <= self.radii_mm[-1])
         for node in (after - 1, after):  # both neighbours have to agree

@@ -16,8 +16,8 @@ from tests.hardware.controllers.maestro import MaestroModel
 
 ARM = load_arm("drawing_arm_2022")
 POSE = ARM.from_file_units([0.0, 45.0, -45.0, -45.0, -45.0])
-POSE_QUARTERS = [6000, 4 * 795, 4 * 610, 4 * 760, 4 * 1510]
-"""Of the measured tables, half-way between rows."""
+POSE_QUARTERS = [6000, 4 * 792, 4 * 610, 3042, 4 * 1502]
+"""Of the tables, half-way between rows."""
 
 
 def _driver(far: Bench, name: str = "maestro") -> Driver:
@@ -140,8 +140,8 @@ def test_nothing_outside_its_range_leaves_the_host() -> None:
     far = Bench(model)
     driver = _driver(far)
     beyond = POSE.copy()
-    beyond[1] = np.radians(70.1)
-    with pytest.raises(HardwareError, match=r"joint q2 at 70.1 deg .* outside its range of 540 to 1050 us"):
+    beyond[1] = np.radians(80.9)
+    with pytest.raises(HardwareError, match=r"joint q2 at 80.9 deg .* outside its range of 448 to 1157 us"):
         driver.connect(beyond)
     driver.connect(POSE)
     before = len(model.targets)
