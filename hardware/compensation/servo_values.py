@@ -57,6 +57,12 @@ class Calibration:
         return np.array([(curve.low, curve.high) for curve in self._curves])
 
     @property
+    def reach(self) -> FloatArray:
+        """(n_joints, 2): least and most position, rad or mm, that each servo can be told."""
+        ends = self.to_joints(self.ranges.T).T
+        return np.sort(ends, axis=1)
+
+    @property
     def steps(self) -> FloatArray:
         """(n_joints,) the least difference that each servo can be told, 0 where there is none."""
         return np.array([curve.step for curve in self._curves])
@@ -168,6 +174,18 @@ def _pulse_curve(joint: Joint, servo: Servo) -> _Curve:
 
 def _count_curve(joint: Joint, servo: BusServo) -> _Curve:
     low, high = servo.count_range
+    if servo.curve is not None:
+        points = np.array(servo.curve)
+        return _Curve(
+            joint,
+            1,
+            points,
+            max(low, points[:, 1].min()),
+            min(high, points[:, 1].max()),
+            _COUNT,
+            servo.dead_band_counts,
+            servo.backlash,
+        )
     positions = (np.array([low, high]) - servo.count_at_zero) / servo.counts_per_unit
     points = np.column_stack((positions, (low, high)))
     return _Curve(joint, 1, points[np.argsort(positions)], low, high, _COUNT, servo.dead_band_counts, servo.backlash)

@@ -16,8 +16,10 @@ from planner.checking.check_result import Finding
 from planner.checking.joints import columns, couplings, position_limits, rate_limits, rest_at_the_ends
 from planner.checking.pen import above_the_paper, links_apart, on_the_paper
 from planner.errors import HardwareError, TrajectoryFileError
-from planner.trajectory import Trajectory
+from planner.trajectory import PATTERN, Trajectory
 
+_FELT_MM = 4.5
+"""A pattern feels for the paper: so far below it the pen goes on purpose."""
 _OFF_PAPER_MM = 0.5
 """A planned pen is within micrometres of the paper; one that is off by this belongs to an arm of another shape."""
 
@@ -51,7 +53,7 @@ def _findings(trajectory: Trajectory, arm: Arm) -> Iterator[Finding]:
     yield from couplings(trajectory, arm)
     poses = [sweep(trajectory, arm, Interpolation.LINEAR, per_step=1)]
     yield from on_the_paper(trajectory, poses, _OFF_PAPER_MM)
-    yield from above_the_paper(trajectory, poses, _OFF_PAPER_MM)
+    yield from above_the_paper(trajectory, poses, _FELT_MM if trajectory.method == PATTERN else _OFF_PAPER_MM)
     yield from links_apart(trajectory, poses, _OFF_PAPER_MM)
 
 

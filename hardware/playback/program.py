@@ -25,7 +25,8 @@ class Program:
 
     positions: (n, n_joints) rad or mm. stroke: (n,) index of the stroke being drawn, or TRAVELLING. sample: (n,) where
     in the trajectory that is, a fractional index; on the way to the drawing where it begins, on the way back its end.
-    approach, retreat: how many set points come before and after those of the drawing.
+    approach, retreat: how many set points come before and after those of the drawing. uncompensated: (n, n_joints)
+    where the joints are meant to be, if servos are sent elsewhere for that.
     """
 
     positions: FloatArray
@@ -34,6 +35,12 @@ class Program:
     rate_hz: float
     approach: int
     retreat: int
+    uncompensated: FloatArray | None = None
+
+    @property
+    def meant(self) -> FloatArray:
+        """(n, n_joints) where the joints are meant to be."""
+        return self.positions if self.uncompensated is None else self.uncompensated
 
     @property
     def duration_s(self) -> float:

@@ -10,14 +10,13 @@ import numpy as np
 
 from hardware.clock import Clock
 from hardware.compensation.servo_values import own_calibration
-from planner.arms.arm import Arm
+from planner.arms.arm import SERVO_LAG_S, Arm, Joint
+from planner.arms.slack import half_slack
 from planner.arrays import FloatArray
 from planner.errors import HardwareError
 
 _STOP_ALLOWANCE = 1e-6
 """How far beyond a limit, in rad or mm, a set point may be before the simulated joint hits its end stop."""
-_LAG_S = 0.02
-"""Time constant of a real servo's first-order lag: it looks for a new pulse once in so long."""
 _SETTLED_LAGS = 10
 
 
@@ -27,7 +26,8 @@ class Servos(StrEnum):
     IDEAL = "ideal"
     """Nothing between them and their set points but their limits of speed."""
     REAL = "real"
-    """What the arm file says of its servos, resolution, dead band and backlash, and a lag."""
+    """Those of an arm that need not be as its file says: told after the file, they do what the arm makes of it, with
+    resolution, dead band, backlash and lag."""
     LAGGING = "lagging"
     """A lag alone, for an arm file that says nothing of servos."""
 
@@ -77,10 +77,13 @@ class SimulatedArm:
 
     ahead_s = 0.0
 
-    def __init__(self, arm: Arm, clock: Clock, servos: Servos = Servos.IDEAL) -> None:
-        """Errors: ArmFileError where real servos are asked for that the arm file does not describe."""
+    def __init__(self, arm: Arm, clock: Clock, servos: Servos = Servos.IDEAL, true_arm: Arm | None = None) -> None:
+        """true_arm: what real servos move, where that is not as `arm` says; what is recorded are its joints.
+
+        Errors: ArmFileError where real servos are asked for that the arm file does not describe."""
         self._arm, self._clock = arm, clock
-        self._servos = _KINDS[servos](arm)
+        self._servos = _KINDS[servos](arm, true_arm or arm)
+        self._room = half_slack(arm) if servos is Servos.REAL else np.zeros(arm.n_joints)
         self._target: FloatArray | None = None
         self._at_s = 0.0
         self._recorder = Recorder(arm.n_joints)
@@ -144,7 +147,8 @@ class SimulatedArm:
         self._recorder.add(self._at_s, self._connected_target(), self._servos.positions.copy())
 
     def _refuse_beyond_stops(self, positions: FloatArray) -> None:
-        beyond = (positions < self._arm.minimum - _STOP_ALLOWANCE) | (positions > self._arm.maximum + _STOP_ALLOWANCE)
+        room = self._room + _STOP_ALLOWANCE  # slack that is taken up moves no joint
+        beyond = (positions < self._arm.minimum - room) | (positions > self._arm.maximum + room)
         if beyond.any():
             joint = int(np.argmax(beyond))
             value = self._arm.to_file_units(positions)[joint]
@@ -157,7 +161,7 @@ class SimulatedArm:
 class _Ideal:
     """Joints that are limited in speed and in nothing else. positions: (n_joints,), rad or mm."""
 
-    def __init__(self, arm: Arm) -> None:
+    def __init__(self, arm: Arm, true_arm: Arm) -> None:
         self._max_velocity = arm.max_velocity
         self.positions = np.zeros(arm.n_joints)
 
@@ -175,24 +179,31 @@ class _Ideal:
 class _Lagging:
     """Joints that their motors move after their set points with a lag."""
 
-    def __init__(self, arm: Arm) -> None:
-        self._max_velocity = arm.max_velocity
+    def __init__(self, arm: Arm, true_arm: Arm) -> None:
+        self._max_velocity = true_arm.max_velocity
+        self._lag_s = np.array([_lag_s(joint) for joint in true_arm.joints])
         self._motors = self.positions = np.zeros(arm.n_joints)
 
     def stand_at(self, positions: FloatArray) -> None:
-        self._motors = self.positions = positions.copy()
+        self._motors = self.positions = self._wanted(positions)
 
     def run(self, target: FloatArray, duration_s: float) -> None:
         furthest = self._max_velocity * duration_s
-        self._motors = self._motors + np.clip(-np.expm1(-duration_s / _LAG_S) * self._pull(target), -furthest, furthest)
+        share = -np.expm1(-duration_s / self._lag_s)
+        self._motors = self._motors + np.clip(share * self._pull(target), -furthest, furthest)
         self.positions = self._moved()
 
     def settling_s(self, target: FloatArray) -> float:
-        return float(np.max(np.abs(target - self._motors) / self._max_velocity)) + _SETTLED_LAGS * _LAG_S
+        away = np.abs(self._wanted(target) - self._motors)
+        return float(np.max(away / self._max_velocity + _SETTLED_LAGS * self._lag_s))
+
+    def _wanted(self, target: FloatArray) -> FloatArray:
+        """Where the joints would be if their motors did as they are told."""
+        return target.copy()
 
     def _pull(self, target: FloatArray) -> FloatArray:
         """How far each motor wants to go."""
-        return target - self._motors
+        return self._wanted(target) - self._motors
 
     def _moved(self) -> FloatArray:
         """Where the motors take the joints."""
@@ -201,20 +212,25 @@ class _Lagging:
 
 class _Real(_Lagging):
     """Joints behind servos: a pulse or a count of limited resolution, a motor that runs after what is beyond the dead
-    band, and gears with play, inside which the joint stays where it is."""
+    band, and gears with play, inside which the joint stays where it is. Told as `arm` says, moved as `true_arm` is."""
 
-    def __init__(self, arm: Arm) -> None:
-        super().__init__(arm)
-        self._calibration = own_calibration(arm)
-        self._step, self._dead_band = self._calibration.steps, self._calibration.dead_bands
-        self._play = self._calibration.backlash
+    def __init__(self, arm: Arm, true_arm: Arm) -> None:
+        super().__init__(arm, true_arm)
+        self._told, self._true = own_calibration(arm), own_calibration(true_arm)
+        self._step, self._dead_band, self._play = self._true.steps, self._true.dead_bands, self._true.backlash
+
+    def _wanted(self, target: FloatArray) -> FloatArray:
+        return self._true.to_joints(self._rounded(target))
+
+    def _rounded(self, target: FloatArray) -> FloatArray:
+        told = self._told.to_servos(target)
+        step = np.where(self._step > 0, self._step, 1.0)
+        return np.where(self._step > 0, np.round(told / step) * step, told)
 
     def _pull(self, target: FloatArray) -> FloatArray:
-        told = self._calibration.to_servos(target)
-        step = np.where(self._step > 0, self._step, 1.0)
-        told = np.where(self._step > 0, np.round(told / step) * step, told)
-        wanted = self._calibration.to_joints(told)
-        dead_band = np.abs(self._calibration.to_joints(told + self._dead_band) - wanted)
+        told = self._rounded(target)
+        wanted = self._true.to_joints(told)
+        dead_band = np.abs(self._true.to_joints(told + self._dead_band) - wanted)
         error = wanted - self._motors
         pull: FloatArray = np.sign(error) * np.maximum(np.abs(error) - dead_band, 0.0)
         return pull
@@ -223,7 +239,13 @@ class _Real(_Lagging):
         return np.clip(self.positions, self._motors - self._play / 2, self._motors + self._play / 2)
 
 
-_KINDS: dict[Servos, Callable[[Arm], _Ideal | _Lagging]] = {
+def _lag_s(joint: Joint) -> float:
+    """As the file says; what hobby servos have where it says nothing."""
+    known = joint.servo or joint.bus
+    return SERVO_LAG_S if known is None or known.lag_s == 0 else known.lag_s
+
+
+_KINDS: dict[Servos, Callable[[Arm, Arm], _Ideal | _Lagging]] = {
     Servos.IDEAL: _Ideal,
     Servos.REAL: _Real,
     Servos.LAGGING: _Lagging,

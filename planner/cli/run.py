@@ -25,18 +25,23 @@ def run(arguments: list[str]) -> int:
     options = parser().parse_args(arguments)
     refuse_contradictions(options)
 
+    from hardware.compensation.servo_values import own_calibration
     from hardware.drivers.table import SIMULATORS, calibration_of
+    from hardware.playback.compensated import compensated
     from hardware.playback.preflight import servo_values, set_points
     from hardware.playback.program import make_program, parking
+    from hardware.playback.recording import write_record
     from planner.arms.arm_file import load_arm
     from planner.cli.controls import breaking_off
     from planner.cli.one_run import one_at_a_time, refuse_unkept
     from planner.cli.resuming import where_to_begin
     from planner.cli.run_pictures import check_pictures, save_pictures
-    from planner.cli.run_playing import play_out, set_up
-    from planner.trajectory import read_trajectory
+    from planner.cli.run_playing import play_out, set_up, true_arm_of
+    from planner.trajectory import PATTERN, read_trajectory
 
     check_pictures(options.picture, options.trajectory)
+    if options.record:
+        check_target(options.record, options.trajectory)
     if options.film:
         check_target(options.film, options.trajectory)
     if options.resume:
@@ -48,7 +53,8 @@ def run(arguments: list[str]) -> int:
     if calibration is not None:
         servo_values(calibration, positions, trajectory, options.trajectory)
     last_stroke, rate_hz = int(trajectory.stroke.max()), trajectory.rate_hz * options.speed_factor
-    rig = set_up(options, arm)
+    true_arm = true_arm_of(options, arm)
+    rig = set_up(options, arm, true_arm)
     with breaking_off(), nullcontext() if options.dry_run else one_at_a_time(options), closing(rig.driver):
         beginning = where_to_begin(options, arm, trajectory.stroke, None if options.dry_run else rig.driver)
         all_drawn = options.resume and beginning.next_stroke > last_stroke
@@ -68,7 +74,16 @@ def run(arguments: list[str]) -> int:
                 park=arm.park,
             )
         )
-        told = _told_to_servos(calibration, program, arm)
+        if options.record and calibration is None:
+            calibration = own_calibration(arm)
+        sent = program
+        if calibration is not None and trajectory.method != PATTERN:  # where slack is to show
+            sent = compensated(arm, program, calibration)
+        told = _told_to_servos(calibration, sent, arm)
+        if options.record and calibration is not None:
+            write_record(arm, sent, calibration, options.record)
+        if options.driver not in SIMULATORS or options.servos == "real":  # others have no slack
+            program = sent
         if options.dry_run:
             print_lines(_check_result(options, arm, program, calibration, told))
             return 0
@@ -76,7 +91,7 @@ def run(arguments: list[str]) -> int:
     lines = played.lines()
     if rig.recording is not None and options.picture:
         lines += save_pictures(
-            options.picture, trajectory, arm, positions, rig.recording().positions, beginning.next_stroke
+            options.picture, trajectory, arm, positions, true_arm, rig.recording().positions, beginning.next_stroke
         )
     if not options.quiet:
         print_summary(lines, *options.picture)

@@ -74,9 +74,16 @@ def parser() -> Parser:
         "--servos",
         choices=("ideal", "real"),
         default="ideal",
-        help="sim: joints that follow exactly within their speeds, or with the resolution, dead band "
-        "and backlash of the arm file and a lag (default: %(default)s)",
+        help="sim: joints that follow exactly within their speeds, or those of an arm with errors that its file does "
+        "not know of: resolution, dead band, backlash, lag, curves, lengths (default: %(default)s)",
     )
+    options.add_argument(
+        "--true-arm",
+        metavar="NAME|FILE",
+        help="--servos real: what the arm really is (default: drawn at random about the arm's file, as far off as that "
+        "leaves open)",
+    )
+    options.add_argument("--seed", type=_seed, metavar="N", help="--servos real: of the random arm (default: 0)")
     options.add_argument(
         "--picture",
         type=output_file,
@@ -87,8 +94,20 @@ def parser() -> Parser:
         "wanted; may be given more than once",
     )
     options.add_argument("--film", type=output_file, metavar="FILE", help="mujoco: a .gif or .mp4 of the arm at work")
+    options.add_argument(
+        "--record",
+        type=output_file,
+        metavar="FILE",
+        help="also write what each servo is told, a .csv of one row a set point, which plan calibrate needs",
+    )
     options.add_argument("--quiet", action="store_true", help="no progress and no summary")
     return options
+
+
+def _seed(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"'{text}' is no whole number from 0 on")
+    return int(text)
 
 
 def _baud(text: str) -> int:
@@ -118,5 +137,10 @@ def refuse_contradictions(options: argparse.Namespace) -> None:
             raise UsageError(f"--{name} goes with --driver {' or '.join(drivers)}, not with {options.driver}")
     if options.film and options.film.suffix.lower() not in _FILMS:
         raise UsageError(f"{options.film}: a film ends in {' or '.join(_FILMS)}")
+    for name, given in (("true-arm", options.true_arm is not None), ("seed", options.seed is not None)):
+        if given and options.servos != "real":
+            raise UsageError(f"--{name} goes with --servos real")
+    if options.true_arm and options.seed is not None:
+        raise UsageError("--true-arm says what the arm really is; leave out --seed")
     if options.resume and options.from_stroke is not None:
         raise UsageError("--resume finds its stroke by itself; leave out --from-stroke")

@@ -30,17 +30,18 @@ def save_pictures(
     trajectory: Trajectory,
     arm: Arm,
     set_points: FloatArray,
+    true_arm: Arm,
     positions: FloatArray,
     first_stroke: int,
 ) -> list[str]:
-    """Write what was drawn as the joints went through `positions`; how like it is what was wanted, in words.
+    """Write what was drawn as the joints of `true_arm` went through `positions`; how like what was wanted, in words.
 
     An .svg holds what was drawn at its true size, any other picture shows it beside what was wanted from
     `first_stroke` on. Errors: OutputError.
     """
     from planner.checking.drawing_error import drawing_error
 
-    drawn = drawn_lines(arm, positions)
+    drawn = drawn_lines(true_arm, positions)
     wanted = list(_wanted(trajectory, arm, set_points, first_stroke))
     text = drawing_error(drawn, wanted).text()
     for target in targets:

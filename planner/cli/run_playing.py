@@ -18,10 +18,12 @@ from hardware.playback.progress import Played, Progress
 from hardware.port import Line
 from hardware.simulation.simulated_arm import Recording, Servos, SimulatedArm
 from planner.arms.arm import Arm
+from planner.arms.arm_file import load_arm
 from planner.cli.controls import KEYS, controls
 from planner.cli.keeping import Keeping
 from planner.cli.terminal import Show, print_note, print_warnings, progress
-from planner.errors import HardwareError
+from planner.error_model.random_arm import random_arm
+from planner.errors import HardwareError, UsageError
 
 if TYPE_CHECKING:
     from hardware.simulation.mujoco_arm import MujocoArm
@@ -38,10 +40,25 @@ class Rig:
     recording: Callable[[], Recording] | None
 
 
-def set_up(options: argparse.Namespace, arm: Arm) -> Rig:
+def true_arm_of(options: argparse.Namespace, arm: Arm) -> Arm:
+    """What real servos of the simulated arm move. Errors: PlannerError."""
+    if options.servos == "ideal" or calibration_of(SIMULATED, arm) is None:
+        return arm
+    if not options.true_arm:
+        return random_arm(arm, options.seed or 0)
+    true_arm = load_arm(options.true_arm)
+    if true_arm.column_names != arm.column_names:
+        raise UsageError(
+            f"--true-arm {options.true_arm} has the joints {', '.join(true_arm.column_names)}; arm '{arm.name}' has "
+            f"{', '.join(arm.column_names)}"
+        )
+    return true_arm
+
+
+def set_up(options: argparse.Namespace, arm: Arm, true_arm: Arm) -> Rig:
     """Nothing is opened yet. Errors: ArmFileError where the arm file does not say how joints are moved."""
     clock = InstantClock() if options.fast else WallClock()
-    simulated = _simulated(options, arm, clock)
+    simulated = _simulated(options, arm, true_arm, clock)
     if simulated is None:
         return Rig(make_driver(options.driver, arm, Line(options.port or "", options.baud), clock), clock, None)
     return Rig(simulated, clock, lambda: simulated.recording)
@@ -88,7 +105,7 @@ def play_out(
     return played
 
 
-def _simulated(options: argparse.Namespace, arm: Arm, clock: Clock) -> SimulatedArm | MujocoArm | None:
+def _simulated(options: argparse.Namespace, arm: Arm, true_arm: Arm, clock: Clock) -> SimulatedArm | MujocoArm | None:
     if options.driver == SIMULATED:
         servos = Servos(options.servos)
         if servos is Servos.REAL and calibration_of(SIMULATED, arm) is None:
@@ -99,7 +116,7 @@ def _simulated(options: argparse.Namespace, arm: Arm, clock: Clock) -> Simulated
                 ]
             )
             servos = Servos.LAGGING
-        return SimulatedArm(arm, clock, servos)
+        return SimulatedArm(arm, clock, servos, true_arm)
     if options.driver == MUJOCO:
         from hardware.simulation.mujoco_arm import MujocoArm
 
