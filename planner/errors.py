@@ -57,6 +57,14 @@ class TrajectoryFileError(PlannerError):
         super().__init__(f"{where}: {reason}")
 
 
+class CalibrationError(PlannerError):
+    """A record or marks that no calibration can rest on."""
+
+    def __init__(self, source: str, reason: str) -> None:
+        self.source, self.reason = source, reason
+        super().__init__(f"{source}: {reason}")
+
+
 class OutputError(PlannerError):
     """A result that cannot be written where the user wants it."""
 

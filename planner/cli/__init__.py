@@ -87,6 +87,18 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.compare import compare
 
             return compare(rest)
+        case "pattern":
+            from planner.cli.pattern import pattern
+
+            return pattern(rest)
+        case "calibrate":
+            from planner.cli.calibrate import calibrate
+
+            return calibrate(rest)
+        case "predict":
+            from planner.cli.predict import predict
+
+            return predict(rest)
         case "arm":
             from planner.cli.arm import arm
 

@@ -21,6 +21,7 @@ from planner.trajectory import written_aside
 
 COLUMNS = ("mark", "t_s", "x_mm", "y_mm")
 TOUCH_COLUMNS = ("touch_x0_mm", "touch_y0_mm", "touch_x1_mm", "touch_y1_mm", "touch_slope")
+TOUCH_TIME = "touch_t_s"
 _DECIMALS = 3
 _FARTHEST_MM = 2000.0
 _STEEPEST = 10.0
@@ -39,12 +40,14 @@ class TouchDown:
     """A line beside a mark along which the tip comes down evenly, to tell its height by where the ink begins.
 
     start_mm: where it begins for a tip that is as high as it should be. end_mm: where the line ends. slope: mm of
-    height lost for each mm along the line.
+    height lost for each mm along the line. t_s: when the pen is meant to be at the start, by the record's clock, where
+    that is known.
     """
 
     start_mm: tuple[float, float]
     end_mm: tuple[float, float]
     slope: float
+    t_s: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "start_mm", _rounded(self.start_mm))
@@ -98,14 +101,23 @@ def extent_mm(marks: Sequence[Mark]) -> tuple[FloatArray, FloatArray]:
 def write_marks(target: Path, marks: Sequence[Mark]) -> None:
     """Write `marks.csv`; cells of the touch-down stay empty where a mark has none. Errors: OutputError."""
     n_modes = len(marks[0].modes_mm) if marks else 0
+    timed = any(mark.touch_down is not None and mark.touch_down.t_s is not None for mark in marks)
     with written_aside(target) as file:
         rows = csv.writer(cast("IO[str]", file), lineterminator="\n")
-        rows.writerow((*COLUMNS, *TOUCH_COLUMNS, *(name for pair in _mode_columns(n_modes) for name in pair)))
+        rows.writerow(
+            (
+                *COLUMNS,
+                *TOUCH_COLUMNS,
+                *[TOUCH_TIME] * timed,
+                *(name for pair in _mode_columns(n_modes) for name in pair),
+            )
+        )
         for mark in marks:
             contact = mark.touch_down
             line = ("",) * 5 if contact is None else (*contact.start_mm, *contact.end_mm, f"{contact.slope:.6g}")
             modes = (value for mode in mark.modes_mm for value in mode)
-            rows.writerow((mark.number, f"{mark.t_s:.6f}", *mark.place_mm, *line, *modes))
+            time = "" if contact is None or contact.t_s is None else f"{contact.t_s:.6f}"
+            rows.writerow((mark.number, f"{mark.t_s:.6f}", *mark.place_mm, *line, *[time] * timed, *modes))
 
 
 def read_marks(source: Path) -> tuple[Mark, ...]:
@@ -149,6 +161,7 @@ def _mark(source: str, line: int, cells: dict[str, str], n_modes: int) -> Mark:
         if any(told) and not all(told):
             raise ValueError("of the five touch-down columns some are empty; fill in all of them, or none")
         x0, y0, x1, y1, slope = (_number(name, cells) if all(told) else 1.0 for name in TOUCH_COLUMNS)
+        time = _number(TOUCH_TIME, cells) if cells.get(TOUCH_TIME, "").strip() else None
         number = _number("mark", cells)
         if number != int(number) or number < 0:
             raise ValueError(f"mark '{cells['mark']}' is not a whole number from 0")
@@ -156,7 +169,7 @@ def _mark(source: str, line: int, cells: dict[str, str], n_modes: int) -> Mark:
             int(number),
             _number("t_s", cells),
             (_number("x_mm", cells), _number("y_mm", cells)),
-            TouchDown((x0, y0), (x1, y1), slope) if all(told) else None,
+            TouchDown((x0, y0), (x1, y1), slope, time) if all(told) else None,
             tuple((_number(x, cells), _number(y, cells)) for x, y in _mode_columns(n_modes)),
         )
     except ValueError as error:

@@ -1,0 +1,127 @@
+"""From a data sheet to whole lines, by commands alone, on an arm that nobody told anything of."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hardware.compensation.servo_values import pulse_calibration
+from planner.arms.arm_file import load_arm
+from planner.cli import main
+from tests.judge.playing import Record, read_record
+from tests.judge.true_arm import random_arm
+from tests.judge.verdict import judge, measured
+
+DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 20" fill="none" stroke="black">
+<path d="M0 0H60V20H0ZM0 20L20 0L40 20L60 0"/><circle cx="15" cy="10" r="7"/><path d="M45 3v.01"/></svg>"""
+
+
+def write_marks(record: Record, marks: Path, target: Path, true: object, seed: int) -> None:
+    times_s = np.genfromtxt(marks, delimiter=",", names=True)["t_s"]
+    tips = measured(true, record, times_s, np.random.default_rng(seed))  # type: ignore[arg-type]
+    rows = [f"{mark},{x:.3f},{y:.3f},{h:.3f},0.15" for mark, (x, y, h) in enumerate(tips)]
+    target.write_text("\n".join(["mark,x_mm,y_mm,h_mm,sd_mm", *rows]) + "\n")
+
+
+@pytest.mark.parametrize("seed", [3])
+def test_an_arm_that_nobody_has_measured_draws_whole_lines(
+    seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    arm, true = "drawing_arm_2022", random_arm(load_arm("drawing_arm_2022"), np.random.default_rng(seed))
+    Path("drawing.svg").write_text(DRAWING)
+    assert main(["pattern", "--arm", arm, "-o", "pattern.csv", "--marks", "marks.csv"]) == 0
+    assert main(["check", "pattern.csv"]) == 0
+    assert main(["run", "pattern.csv", "--fast", "--record", "pulses.csv", "--quiet"]) == 0
+    assert main(["run", "pattern.csv", "--driver", "maestro", "--dry-run", "--record", "dry.csv"]) == 0
+    assert Path("dry.csv").read_text() == Path("pulses.csv").read_text()
+    write_marks(read_record(Path("pulses.csv")), Path("marks.csv"), Path("measured.csv"), true, seed)
+    assert (
+        main(
+            [
+                "calibrate",
+                arm,
+                "--record",
+                "pulses.csv",
+                "--marks",
+                "measured.csv",
+                "-o",
+                "arm2.toml",
+                "--json",
+                "fit.json",
+            ]
+        )
+        == 0
+    )
+    said = capsys.readouterr().out
+    assert "joint q5: " in said and "wrote arm2.toml" in said
+    assert main(["drawing.svg", "--arm", "arm2.toml", "-o", "t.csv", "--quiet"]) == 0
+    assert "# paper: " in Path("t.csv").read_text()
+    assert main(["check", "t.csv", "--drawing", "drawing.svg"]) == 0
+    assert main(["run", "t.csv", "--arm", "arm2.toml", "--fast", "--record", "p.csv", "--quiet"]) == 0
+    capsys.readouterr()
+    assert main(["predict", "t.csv", "--json"]) == 0
+    predicted = json.loads(capsys.readouterr().out)
+
+    record = read_record(Path("p.csv"))
+    verdict = judge(true, record)
+    assert verdict.path_rms < 0.45
+    assert verdict.rms < 0.7
+    assert verdict.missing <= 0.02
+    assert verdict.crushed <= 0.05
+    assert verdict.path_rms / 1.5 < predicted["rms_mm"] < 1.5 * verdict.path_rms
+    low, high = predicted["rms_interval_mm"]
+    assert low <= predicted["rms_mm"] <= high
+    assert json.loads(Path("fit.json").read_text())["predicted_rms_mm"] < 0.6
+
+    told = load_arm("arm2.toml")
+    joints = pulse_calibration(told).to_joints(record.pulses_us)
+    period_s = record.times_s[1] - record.times_s[0]
+    for order, limit in ((1, told.max_velocity), (2, told.max_acceleration)):
+        assert (np.abs(np.diff(joints, order, axis=0)).max(axis=0) / period_s**order <= 1.001 * limit).all()
+    ranges = np.array([joint.servo.pulse_range_us for joint in told.joints if joint.servo is not None])
+    assert (record.pulses_us >= ranges[:, 0]).all() and (record.pulses_us <= ranges[:, 1]).all()
+
+
+def test_what_contradicts_itself_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("r.csv").write_text("t_s\n0\n")
+    Path("m.csv").write_text("mark\n0\n")
+    for arguments, message in (
+        (["pattern", "--arm", "drawing_arm", "-o", "a.csv", "--marks", "a.csv"], "name the same file"),
+        (["pattern", "--arm", "drawing_arm", "-o", "a.csv", "--marks", "b.csv", "--count", "3"], "no number of marks"),
+        (["pattern", "--arm", "scara", "-o", "a.csv", "--marks", "b.csv"], "does not say how joint"),
+        (
+            ["calibrate", "drawing_arm", "--record", "r.csv", "--record", "r.csv", "--marks", "m.csv", "-o", "o.toml"],
+            "give each record its marks",
+        ),
+        (["calibrate", "drawing_arm", "--record", "r.csv", "--marks", "m.csv", "-o", "o.txt"], "ends in .toml"),
+        (["calibrate", "drawing_arm", "--record", "none.csv", "--marks", "m.csv", "-o", "o.toml"], "cannot be read"),
+        (["calibrate", "drawing_arm", "--record", "r.csv", "--marks", "m.csv", "-o", "o.toml"], "has the columns t_s"),
+        (["run", "r.csv", "--seed", "1"], "--seed goes with --servos real"),
+        (["run", "r.csv", "--true-arm", "drawing_arm"], "--true-arm goes with --servos real"),
+    ):
+        assert main(arguments) == 2
+        assert message in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["m.csv", "r.csv"]
+
+
+def test_a_rehearsal_is_held_on_an_arm_that_is_not_as_its_file_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("drawing.svg").write_text(DRAWING)
+
+    def off_mm(arm: str, *options: str) -> float:
+        assert main(["drawing.svg", "--arm", arm, "-o", f"{arm}.csv", "--quiet"]) == 0
+        assert main(["run", f"{arm}.csv", "--fast", "--servos", "real", "--picture", "d.svg", *options]) == 0
+        return float(capsys.readouterr().out.split("what was drawn is off by ")[1].split()[0])
+
+    assert off_mm("drawing_arm_2022", "--true-arm", "drawing_arm_2022") < 2.5
+    assert off_mm("drawing_arm_2022") != off_mm("drawing_arm_2022", "--seed", "1") > 2.5
+    assert off_mm("so101") > 0.5
