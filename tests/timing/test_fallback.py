@@ -13,7 +13,7 @@ from planner.arrays import FloatArray
 from planner.motion.stroke_motion import motions
 from planner.pipeline import plan
 from planner.settings import PlanSettings
-from planner.timing import interior_point, path_timing
+from planner.timing import newton_system, path_timing
 from planner.timing.path_timing import minimum_time
 from tests.timing.rig import LIMITS, LINES, joint_curve, polar_paths, problem_of, rate_curve, rates_by_formula
 from tests.timing.test_path_timing import FINE_HZ, lines_made, steady_s
@@ -50,13 +50,13 @@ def test_a_path_whose_newton_system_fails_leaves_the_others_as_they_were(
     whole = minimum_time(problem)
     assert whole.converged.all()
     unknown = int((2 * paths.n_cells[:lost] + 2).sum()) + 3
-    factorise, calls = interior_point.dpbtrf, iter([unknown])
+    factorise, calls = newton_system.dpbtrf, iter([unknown])
 
     def fail_once(band: FloatArray, lower: int) -> tuple[FloatArray, int]:
         factor, info = factorise(band, lower=lower)
         return factor, next(calls, info)
 
-    monkeypatch.setattr(interior_point, "dpbtrf", fail_once)
+    monkeypatch.setattr(newton_system, "dpbtrf", fail_once)
     timing = minimum_time(problem)
     assert timing.converged.tolist() == [index != lost for index in range(len(LINES))]
     others = np.repeat(timing.converged, paths.n_cells)
