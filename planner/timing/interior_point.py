@@ -54,7 +54,7 @@ def next_iterate(problem: DiscreteProblem, at: Iterate, alive: BoolArray) -> Ite
     )
     dual = np.minimum(1.0, _BOUNDARY * layout.steps_until_zero(at.multipliers, d_multipliers))
     primal = np.minimum(1.0, _BOUNDARY * layout.steps_until_zero([at.b_at_points, *at.slacks], [change.b, *d_slacks]))
-    b, motion, primal = _kept_feasible(problem, at, direction, primal)
+    b, motion, primal, lost = _kept_feasible(problem, at, direction, primal)
     scale = dual[layout.path_of_cell]
     multipliers = per_limit(lambda multiplier, d: multiplier + scale * d, at.multipliers, d_multipliers)
     allowed = lowered_limits(motion, at.allowed)
@@ -69,16 +69,16 @@ def next_iterate(problem: DiscreteProblem, at: Iterate, alive: BoolArray) -> Ite
         time_s=problem.times_s(motion.b),
         gap=mean_gap(problem, slacks, multipliers),
         step=np.minimum(primal, dual),
-        stuck=stuck,
+        stuck=stuck | lost,
     )
 
 
 def _kept_feasible(
     problem: DiscreteProblem, at: Iterate, direction: FloatArray, primal: FloatArray
-) -> tuple[FloatArray, CellMotion, FloatArray]:
+) -> tuple[FloatArray, CellMotion, FloatArray, BoolArray]:
     """The unknowns after such shares (n_paths,) of the direction, or after less where that would break a limit: those
-    of jerk curve, so a step that linearised slacks allow may still be too long. Also their motion, and the shares. A
-    path stays where it is where no share will do."""
+    of jerk curve, so a step that linearised slacks allow may still be too long. Also their motion, the
+    shares, and the paths (n_paths,) that stay where they are, as no share will do."""
     layout = problem.layout
     for _ in range(_MOST_SHORTENED):
         b = at.b + primal[layout.path_of_unknown] * direction
@@ -91,7 +91,7 @@ def _kept_feasible(
         ):
             bad |= ~(layout.smallest(after - _KEPT_AT_LEAST * before) > 0)
         if not bad.any():
-            return b, motion, primal
+            return b, motion, primal, bad
         primal = np.where(bad, _SHORTENED * primal, primal)
     b = np.where(bad[layout.path_of_unknown], at.b, b)
-    return b, problem.motion(b), primal
+    return b, problem.motion(b), primal, bad
