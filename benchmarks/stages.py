@@ -27,7 +27,7 @@ STAGES = {
     "read_drawing": "read",
     "flatten_all": "flatten",
     "join_strokes": "join",
-    "order_strokes": "order",
+    "ordered": "order",
     "smooth_paths": "smooth",
     "joint_paths": "configurations",
     "minimum_time": "timing",
@@ -58,14 +58,14 @@ def main() -> None:
     spent: Counter[str] = Counter()
     points = 0
 
-    def ordered(*arguments: Any, **keywords: Any) -> Any:
+    def order_and_count(*arguments: Any, **keywords: Any) -> Any:
         nonlocal points
-        strokes = order(*arguments, **keywords)
+        strokes, is_finished = order(*arguments, **keywords)
         points = sum(map(len, strokes))
-        return strokes
+        return strokes, is_finished
 
-    order = pipeline.order_strokes
-    pipeline.order_strokes = ordered
+    order = pipeline.ordered
+    pipeline.ordered = order_and_count
     for name, stage in STAGES.items():
         module = pipeline if hasattr(pipeline, name) else work_chunks
         setattr(module, name, _counted(getattr(module, name), stage, spent))

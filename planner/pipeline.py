@@ -18,7 +18,7 @@ from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import extent, flatten_all
 from planner.drawing.join import join_strokes
-from planner.drawing.order import Metric, order_strokes
+from planner.drawing.order import Metric, ordered
 from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
 from planner.execution.work_chunks import (
@@ -89,13 +89,13 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
         report("joining", 0, 1)
         strokes, left_out, warnings = _strokes(drawing, svg_to_arm, arm, settings)
         report("ordering strokes", 0, 1)
-        strokes = _ordered(strokes, arm, settings, lift_mm)
+        strokes, order_notes = _ordered(strokes, arm, settings, lift_mm)
         _require_bounded(strokes, arm, settings, lift_mm)
         timed, strokes, lost, notes = _timed_strokes(executor, context, strokes, report)
         timed, strokes, moves, more_lost, more_notes = _with_travel_moves(
             executor, context, timed, strokes, lift_mm, report
         )
-    warnings += notes + more_notes
+    warnings += order_notes + notes + more_notes
     left_out += lost + more_lost
     trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, placement, left_out, timed, moves)
     _verify(trajectory, arm)
@@ -109,7 +109,8 @@ def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> tupl
     drawing = read_drawing(drawing_file)
     svg_to_arm, _, _, _ = _placed(drawing, arm, settings, lift_mm)
     strokes, _, warnings = _strokes(drawing, svg_to_arm, arm, settings)
-    return _ordered(strokes, arm, settings, lift_mm), warnings
+    strokes, notes = _ordered(strokes, arm, settings, lift_mm)
+    return strokes, warnings + notes
 
 
 def _lift_mm(arm: Arm, settings: PlanSettings) -> float:
@@ -119,9 +120,15 @@ def _lift_mm(arm: Arm, settings: PlanSettings) -> float:
     return lift_mm
 
 
-def _ordered(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> list[FloatArray]:
+def _ordered(
+    strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float
+) -> tuple[list[FloatArray], list[str]]:
+    """The strokes in the order that they are drawn in, and what is to be said of it."""
     canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
-    return order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)), Metric(travel_time_metric(arm), exponent=1 / 3))
+    start_mm, metric = canvas.to_arm_mm(np.zeros(2)), Metric(travel_time_metric(arm), exponent=1 / 3)
+    strokes, is_finished = ordered(strokes, start_mm, metric)
+    note = f"a shorter way between the strokes may be left: {len(strokes)} are too many to search to the end"
+    return strokes, [] if is_finished else [note]
 
 
 def _require_bounded(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> None:
@@ -279,8 +286,16 @@ def _with_travel_moves(
         moves = _travel_moves(executor, context, timed, lift_mm, report)
         blocked = {_end_that_collides(index, move, len(timed)) for index, move in enumerate(moves) if move.collision}
         if not blocked:
-            notes = [f"left out whole, as links would collide before or after them: {counted(len(lost), 'stroke')}"]
-            return timed, strokes, moves, _drawn(lost), notes if lost else []
+            loose = sum(not move.held for move in moves)
+            counts = [
+                (f"left out whole, as links would collide before or after them: {counted(len(lost), 'stroke')}", lost),
+                (
+                    "the lifted pen strays by more than the tolerance, however slow; try a larger --tolerance:"
+                    f" {counted(loose, 'pen-up move')}",
+                    loose,
+                ),
+            ]
+            return timed, strokes, moves, _drawn(lost), [note for note, count in counts if count]
         if not context.settings.skip_unreachable:
             index, collision = next((index, move.collision) for index, move in enumerate(moves) if move.collision)
             raise LinksCollide(index, collision.links, collision.clearance_mm, str(collision))

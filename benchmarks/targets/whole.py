@@ -15,7 +15,7 @@ from planner import pipeline
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
-from planner.drawing.order import order_strokes
+from planner.drawing.order import ordered
 from planner.errors import PlannerError
 from planner.inverse_kinematics.stroke_configurations import configurations_at, exact_configurations
 from planner.settings import PlanSettings
@@ -106,13 +106,15 @@ def phases_and_order(folder: Path, settings: PlanSettings) -> list[Row]:
     rows = []
     total, straight_total = 0.0, 0.0
 
-    def shortest_way(strokes: Sequence[FloatArray], start_mm: FloatArray, *_: object, **__: object) -> list[FloatArray]:
-        return order_strokes(strokes, start_mm)
+    def shortest_way(
+        strokes: Sequence[FloatArray], start_mm: FloatArray, *_: object, **__: object
+    ) -> tuple[list[FloatArray], bool]:
+        return ordered(strokes, start_mm)
 
     for drawing in drawings(folder):
         try:
             phases = _phases(drawing, settings)
-            with patch.object(pipeline, "order_strokes", shortest_way):
+            with patch.object(pipeline, "ordered", shortest_way):
                 straight = _phases(drawing, settings)
         except PlannerError as error:
             rows.append(Row(f"whole drawing, {drawing.stem}", "report", str(error)))

@@ -21,6 +21,8 @@ Embedding = Callable[[FloatArray], FloatArray]
 
 _FIRST_NEIGHBOURS = 8
 _ROUNDS = 3
+"""Searches for a tour, each with closed strokes begun anew where the one before passes them best: none makes the way
+longer, and there is no end that has to be reached."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -63,23 +65,35 @@ def travel(strokes: Sequence[FloatArray], start_xy: FloatArray, metric: Metric =
 
 
 def order_strokes(strokes: Sequence[FloatArray], start_xy: FloatArray, metric: Metric = STRAIGHT) -> list[FloatArray]:
-    """The same strokes, reordered, reversed, and closed ones begun at another of their points.
+    """Strokes as `ordered` has them."""
+    return ordered(strokes, start_xy, metric)[0]
+
+
+def ordered(
+    strokes: Sequence[FloatArray], start_xy: FloatArray, metric: Metric = STRAIGHT
+) -> tuple[list[FloatArray], bool]:
+    """The same strokes, reordered, reversed, and closed ones begun at another of their points; and whether each search
+    for a shorter way came to its end, rather than to the limit of its work.
 
     The travel from `start_xy` is never longer than in the order given.
     """
     if not strokes:
-        return []
+        return [], True
     candidates = _Candidates(strokes, metric)
     start = metric.embed(np.asarray(start_xy, dtype=np.float64).reshape(1, 2))[0]
     tour, entries, exits = _greedy(candidates, start, metric.p)
+    is_finished = True
     for _ in range(_ROUNDS):
-        tour, is_reversed = improve(start, candidates.vectors[entries], candidates.vectors[exits], tour, metric)
+        tour, is_reversed, to_the_end = improve(
+            start, candidates.vectors[entries], candidates.vectors[exits], tour, metric
+        )
+        is_finished &= to_the_end
         entries[is_reversed], exits[is_reversed] = exits[is_reversed], entries[is_reversed]
         if not _rotate_closed(candidates, start, tour, entries, exits, metric):
             break
-    ordered = [_begun_at(strokes[index], int(entries[index] - candidates.first[index])) for index in tour.tolist()]
-    is_shorter = travel(ordered, start_xy, metric) < travel(strokes, start_xy, metric)
-    return ordered if is_shorter else list(strokes)
+    found = [_begun_at(strokes[index], int(entries[index] - candidates.first[index])) for index in tour.tolist()]
+    is_shorter = travel(found, start_xy, metric) < travel(strokes, start_xy, metric)
+    return found if is_shorter else list(strokes), is_finished
 
 
 class _Candidates:

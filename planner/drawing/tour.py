@@ -33,20 +33,21 @@ class Norm(Protocol):
 
 def improve(
     start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, norm: Norm
-) -> tuple[IntArray, BoolArray]:
-    """A tour no longer than `tour`, and which strokes it runs the other way.
+) -> tuple[IntArray, BoolArray, bool]:
+    """A tour no longer than `tour`, which strokes it runs the other way, and whether the search came to its end, where
+    no move is left that gains, rather than to the limit of its rounds or its work.
 
     start: (k,); entries, exits: (n_strokes, k), where each stroke is entered and left now; tour: (n_strokes,).
     """
     n = len(tour)
     if n < 2:
-        return tour, np.zeros(n, dtype=np.bool_)
+        return tour, np.zeros(n, dtype=np.bool_), True
     search = _Search(start, entries, exits, tour, norm)
-    search.run()
+    is_finished = search.run()
     found = search.tour[1:]
     is_reversed = np.zeros(n, dtype=np.bool_)
     is_reversed[found // 2] = found % 2 == 1
-    return found // 2, is_reversed
+    return found // 2, is_reversed, is_finished
 
 
 class _Search:
@@ -72,11 +73,15 @@ class _Search:
         self.apart = self._length(self.a, self.b)
         self.work = 0
 
-    def run(self) -> None:
+    def run(self) -> bool:
+        """Whether no move is left that gains."""
         for _ in range(_ROUNDS):
             n_moves = self._two_opt_round() + self._or_opt_round()
-            if not n_moves or self.work > _WORK_LIMIT:
-                return
+            if not n_moves:
+                return True
+            if self.work > _WORK_LIMIT:
+                break
+        return False
 
     def _links(self) -> tuple[FloatArray, IntArray, IntArray]:
         """(2 n + 2,) travel at each node as the tour is now, nothing at the free end; and the pairs of which a move may

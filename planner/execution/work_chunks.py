@@ -64,8 +64,8 @@ _TAP_S = 0.05
 class TimedStroke:
     """A stroke ready to be drawn: joint samples (n, n_joints) and where it touches down and lifts off.
 
-    settled: whether its timing is near the least time, rather than the fallback. held: whether the pen stays within the
-    tolerance between its samples.
+    converged: whether its timing is near the least time, rather than the fallback. held: whether the pen stays within
+    the tolerance of the drawing, between its samples as well.
     """
 
     joints: FloatArray
@@ -206,7 +206,7 @@ def _timed_lines(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
     paths, smooth = smoothed(strokes, SMOOTH_SHARE * settings.tolerance_mm)
     splines, infeasible_paths = joint_paths(arm, settings.method, paths, settings.weights)
     if not infeasible_paths and strays_mm(arm, paths, splines).max() > _SPLINE_SHARE * settings.tolerance_mm:
-        paths = paths.subdivided()
+        paths = paths.subdivided()  # what is left after that is measured on the samples, with all that they stray
         splines, infeasible_paths = joint_paths(arm, settings.method, paths, settings.weights)
     if infeasible_paths:
         blocked = {infeasible_path.path: infeasible_path for infeasible_path in infeasible_paths}

@@ -26,6 +26,8 @@ TOLERANCE_MM = 1e-3
 _TOLERANCE_LIMITS = 1e-6
 _SURE_GUESSES = 2
 _MOST_SETTLING = 50
+"""Each solution goes a small part of the way to where it would stay: what is left after so many is a slow drift along
+the path, which is as exact as any other."""
 _ROOM = 5e-3
 """Share of each joint's range kept from its limits, for the splines that join the configurations of sparse targets."""
 

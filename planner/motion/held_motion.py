@@ -1,6 +1,6 @@
 """Strokes timed so that between samples, too, the tip stays within the tolerance of its path.
 
-Caps on the speed along a path (`speed_cap`, `chord_error_limit`) foresee what samples cut off where the pen is at
+Caps on the speed along a path (`rate_limit`, `chord_error_limit`) foresee what samples cut off where the pen is at
 speed. What is left is measured on the samples themselves: where it is too much, the speed around is capped and the
 stroke timed anew, further around with every round, so that in the end the whole of it is slower.
 """
@@ -30,7 +30,7 @@ _SLOWEST = 0.5
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Timed:
-    """joints: (n, n_joints) samples of a stroke. settled: whether it is timed near the least time, rather than by the
+    """joints: (n, n_joints) samples of a stroke. converged: whether it is timed near the least time, rather than by the
     fallback. held: whether the tip is within the tolerance between all samples."""
 
     joints: FloatArray

@@ -23,6 +23,9 @@ _FROM_FEW = np.polynomial.chebyshev.chebvander(2 * _CHECKED - 1, 6) @ np.linalg.
 )
 """(n_checks, 7) values at the checks from those at the few."""
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_NEWTON_ROUNDS, _BISECTIONS = 8, 60
+_EXACT = 1e-13
+"""Fractions of a cell are found to so much: four rounds of Newton's method are usual, and bisection is sure."""
 _NODES, _WEIGHTS = 0.5 * (_NODES + 1), 0.5 * _WEIGHTS
 
 
@@ -134,11 +137,27 @@ def _until(rates: FloatArray, fraction: FloatArray) -> FloatArray:
 
 
 def _fraction_after(rates: FloatArray, time_s: FloatArray, cell_s: FloatArray) -> FloatArray:
-    """(n,) fraction of its cell that each motion has reached so long after entering it (Newton's method)."""
+    """(n,) fraction of its cell that each motion has reached so long after entering it: by Newton's method, and by
+    bisection where that does not get there."""
     fraction = np.clip(time_s / cell_s, 0.0, 1.0)
-    for _ in range(8):
+    moved = np.full(len(fraction), np.inf)
+    for _ in range(_NEWTON_ROUNDS):
         change = (time_s - _until(rates, fraction)) * np.sqrt(_rate_squared(rates, fraction)[0])
-        fraction = np.clip(fraction + change, 0.0, 1.0)
-        if np.abs(change).max(initial=0.0) < 1e-13:
-            break
+        before, fraction = fraction, np.clip(fraction + change, 0.0, 1.0)
+        moved = np.abs(fraction - before)
+        if moved.max(initial=0.0) < _EXACT:
+            return fraction
+    open_ = moved >= _EXACT
+    fraction[open_] = _bisected(rates[open_], time_s[open_])
+    return fraction
+
+
+def _bisected(rates: FloatArray, time_s: FloatArray) -> FloatArray:
+    """(n,) fraction of its cell at which each motion is at a time: time grows along a cell."""
+    low, high = np.zeros(len(rates)), np.ones(len(rates))
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        is_later = _until(rates, middle) < time_s
+        low, high = np.where(is_later, middle, low), np.where(is_later, high, middle)
+    fraction: FloatArray = 0.5 * (low + high)
     return fraction

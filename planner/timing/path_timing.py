@@ -6,10 +6,7 @@ With b = (dsigma/dt)^2 as a function of sigma and ' = d/dsigma, a joint path q(s
     acceleration  q'' b + q' b'/2
     jerk          (q''' b + 3/2 q'' b' + 1/2 q' b'') sqrt(b)
 
-(Verscheure et al. 2009 for the first two; the third is not convex). Each b is a cubic in every cell of its path with
-value and slope in common at the cell ends, so acceleration is continuous and jerk jumps at cell ends only. Velocity
-and jerk limits are imposed at five points of every cell, acceleration limits at its ends and middle. Where the jerk
-is larger between the points than at them, the limit at the nearest is lowered by as much.
+(Verscheure et al. 2009 for the first two; the third is not convex). `docs/timing.md` derives the rest.
 """
 
 from __future__ import annotations
@@ -19,7 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import BoolArray, FloatArray
-from planner.timing.interior_point import HERMITE, VALUE_FORMS, Solver, State
+from planner.timing.cell_cubics import HERMITE, VALUE_FORMS
+from planner.timing.discrete_problem import DiscreteProblem
+from planner.timing.feasible_start import feasible_start
+from planner.timing.interior_point import next_iterate
+from planner.timing.iterate import first_iterate
 from planner.timing.timing_problem import TimingProblem
 
 _MOST_ITERATIONS = 80
@@ -37,7 +38,7 @@ be slowed by between the points does not undo that."""
 @dataclass(frozen=True, eq=False, slots=True)
 class PathTiming:
     """rates: (total cells, 4) polynomials of b in each cell, lowest power of the fraction first, that keep the limits
-    at the points; settled: (n_paths,) whether they are near the least time, rather than the fallback."""
+    at the points; converged: (n_paths,) whether they are near the least time, rather than the fallback."""
 
     rates: FloatArray
     converged: BoolArray
@@ -57,36 +58,36 @@ def minimum_time(problem: TimingProblem) -> PathTiming:
 
 
 def _timed_together(problem: TimingProblem) -> PathTiming:
-    solver = Solver(problem)
+    discrete = DiscreteProblem(problem)
+    layout = discrete.layout
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # of paths that fail
-        b, converged = _solved(solver)
-    four = np.stack([b[solver.cell + k] for k in range(4)])
-    time_s = solver.times_s(VALUE_FORMS @ four)
-    steady = np.minimum.reduceat(solver.alone(), solver.first_cell)
+        b, converged = _solved(discrete)
+    four = layout.unknowns_of_cells(b)
+    time_s = discrete.times_s(VALUE_FORMS @ four)
+    steady = np.minimum.reduceat(discrete.steady_b(), layout.first_cell)
     is_slow = problem.n_cells / np.sqrt(steady) < time_s * np.where(converged, 1.0, 1.0 / _CLEARLY_FASTER)
     constant = np.outer(steady, [1.0, 0.0, 0.0, 0.0])
-    rates = np.where(is_slow[solver.path_of_cell, None], constant[solver.path_of_cell], four.T @ HERMITE)
+    rates = np.where(is_slow[layout.path_of_cell, None], constant[layout.path_of_cell], four.T @ HERMITE)
     return PathTiming(rates, converged)
 
 
-def _solved(solver: Solver) -> tuple[FloatArray, BoolArray]:
+def _solved(problem: DiscreteProblem) -> tuple[FloatArray, BoolArray]:
     """The unknowns of all paths, and which of these (n_paths,) are near the least time."""
-    result = solver.start()
-    converged = np.zeros(solver.n_paths, dtype=bool)
-    state = State.starting(solver, result)
-    where, paths = np.arange(len(result)), np.arange(solver.n_paths)  # of the working set in the result
+    result = feasible_start(problem)
+    converged = np.zeros(problem.layout.n_paths, dtype=bool)
+    iterate = first_iterate(problem, result)
+    where, paths = np.arange(len(result)), np.arange(problem.layout.n_paths)  # of the working set in the result
     for _ in range(_MOST_ITERATIONS):
-        near = state.gap * solver.n_limits <= _GAP * state.time_s
-        alive = ~near & ~state.stuck
-        if np.repeat(alive, solver.problem.n_cells).mean() < _COMPACT_BELOW:
-            result[where], converged[paths] = state.b, near
+        near = iterate.is_near(problem, _GAP)
+        alive = ~near & ~iterate.stuck
+        if np.repeat(alive, problem.layout.n_cells).mean() < _COMPACT_BELOW:
+            result[where], converged[paths] = iterate.b, near
             if not alive.any():
                 break
-            where, paths = where[alive[solver.path_of_unknown]], paths[alive]
-            state = state.subset(solver, alive)
-            solver = Solver(solver.problem.subset(alive))
-            alive = np.ones(solver.n_paths, dtype=bool)
-        state = solver.step(state, alive)
+            where, paths = where[alive[problem.layout.path_of_unknown]], paths[alive]
+            iterate, problem = iterate.subset(problem, alive), problem.subset(alive)
+            alive = np.ones(problem.layout.n_paths, dtype=bool)
+        iterate = next_iterate(problem, iterate, alive)
     else:
-        result[where], converged[paths] = state.b, state.gap * solver.n_limits <= _GAP * state.time_s
+        result[where], converged[paths] = iterate.b, iterate.is_near(problem, _GAP)
     return result, converged

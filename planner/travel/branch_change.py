@@ -48,6 +48,7 @@ def plan_branch_change(
         up.travelling_s + up.lowering_s + over_s + down.lifting_s + down.travelling_s,
         down.lowering_s,
         up.exact and down.exact and len(legs) > 0,
+        held=up.held and down.held,
         too_long_s=max(up.too_long_s, down.too_long_s),
     )
 

@@ -22,6 +22,7 @@ from planner.kinematics.projection import project
 from planner.redundancy.configuration_map import ConfigurationMap, configuration_branches, within_limits
 from planner.settings import CanvasKind
 
+_MOST_ITERATIONS = 3000
 _GRID_CELLS = 160
 _RADIAL_STEPS = 600
 _HEIGHTS = 7
@@ -109,7 +110,7 @@ def _tangent_canvas(kind: CanvasKind, r_max_mm: float, r_min_mm: float, half_ang
 def geometric_reach_mm(arm: Arm) -> float:
     """Largest distance from the base axis at which the pen, held as the arm holds it, touches the paper, limits of
     turning joints aside: how far a joint slides is a length of the arm. For the drawing arm
-    sqrt((L2+L3+L4)^2 - (L5-L1)^2): minus, where the documents print plus."""
+    sqrt((L2+L3+L4)^2 - (L5-L1)^2): minus, where the documents print plus. Errors: PlanError where it is not found."""
     branches = configuration_branches(arm)
     outermost = max(branches, key=lambda branch: branch.radii_mm[-1])
     kinematics = kinematics_of(outermost.level)
@@ -117,7 +118,13 @@ def geometric_reach_mm(arm: Arm) -> float:
         "reach",
         "ipopt",
         {"x": kinematics.independent, "f": -(kinematics.tip[0] / 100), "g": kinematics.task[1:]},
-        {"ipopt.print_level": 0, "ipopt.sb": "yes", "print_time": False, "error_on_fail": False},
+        {
+            "ipopt.print_level": 0,
+            "ipopt.sb": "yes",
+            "ipopt.max_iter": _MOST_ITERATIONS,
+            "print_time": False,
+            "error_on_fail": False,
+        },
     )
     slides = kinematics.independent_of(np.array([joint.kind is JointKind.PRISMATIC for joint in arm.joints]))
     solution = solver(
@@ -127,8 +134,12 @@ def geometric_reach_mm(arm: Arm) -> float:
         lbx=np.where(slides, kinematics.independent_of(arm.minimum), -np.inf),
         ubx=np.where(slides, kinematics.independent_of(arm.maximum), np.inf),
     )
-    found_mm = float(-solution["f"]) * 100 if solver.stats()["success"] else -np.inf
-    return max(found_mm, float(outermost.radii_mm[-1]))
+    if not solver.stats()["success"]:
+        raise PlanError(
+            f"arm {arm.name}: how far its stretched links reach was not found, so that there is no documented and no"
+            " optimal canvas; try --canvas usable"
+        )
+    return max(float(-solution["f"]) * 100, float(outermost.radii_mm[-1]))
 
 
 @lru_cache(maxsize=16)

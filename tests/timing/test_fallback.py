@@ -13,7 +13,7 @@ from planner.arrays import FloatArray
 from planner.motion.stroke_motion import motions
 from planner.pipeline import plan
 from planner.settings import PlanSettings
-from planner.timing import interior_point, path_timing
+from planner.timing import interior_point, newton_system, path_timing
 from planner.timing.path_timing import minimum_time
 from tests.timing.rig import LIMITS, LINES, joint_curve, polar_paths, problem_of, rate_curve, rates_by_formula
 from tests.timing.test_path_timing import FINE_HZ, lines_made, steady_s
@@ -50,13 +50,13 @@ def test_a_path_whose_newton_system_fails_leaves_the_others_as_they_were(
     whole = minimum_time(problem)
     assert whole.converged.all()
     unknown = int((2 * paths.n_cells[:lost] + 2).sum()) + 3
-    factorise, calls = interior_point.dpbtrf, iter([unknown])
+    factorise, calls = newton_system.dpbtrf, iter([unknown])
 
     def fail_once(band: FloatArray, lower: int) -> tuple[FloatArray, int]:
         factor, info = factorise(band, lower=lower)
         return factor, next(calls, info)
 
-    monkeypatch.setattr(interior_point, "dpbtrf", fail_once)
+    monkeypatch.setattr(newton_system, "dpbtrf", fail_once)
     timing = minimum_time(problem)
     assert timing.converged.tolist() == [index != lost for index in range(len(LINES))]
     others = np.repeat(timing.converged, paths.n_cells)
@@ -71,3 +71,14 @@ def test_a_plan_counts_the_strokes_that_the_fallback_times(tmp_path: Path, monke
     monkeypatch.setattr(path_timing, "_MOST_ITERATIONS", 1)
     warnings = plan(drawing, PlanSettings(), lambda *_: None).summary.warnings
     assert warnings == ["timed by the fallback, slower than the least time: 2 strokes"]
+
+
+def test_a_path_whose_steps_all_break_a_limit_is_left_where_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Never called near the least time, though the gap would close: multipliers alone move there."""
+    paths = polar_paths([LINES["corner"]])
+    best = minimum_time(problem_of(paths))
+    monkeypatch.setattr(interior_point, "_KEPT_AT_LEAST", 1e9)
+    timing = minimum_time(problem_of(paths))
+    assert best.converged.all() and not timing.converged.any()
+    motion = motions(paths, timing.rates, LIMITS, FINE_HZ)
+    assert motion.n_periods[0] / FINE_HZ <= steady_s(paths, LIMITS) * (1 + 1e-3)
