@@ -155,6 +155,8 @@ def test_a_line_too_slow_for_the_set_points_is_told_at_the_first() -> None:
     far = Bench(MaestroModel(), baud=9600)
     driver = make_driver("maestro", ARM, far, far)
     driver.connect(POSE)
-    with pytest.raises(HardwareError, match=r"a set point is 20.8 ms on the line and 20 ms are between two"):
+    with pytest.raises(
+        HardwareError, match=r"a set point takes 20.8 ms on the line, but the next one follows after 20 ms"
+    ):
         driver.send(POSE, 0.02)
     driver.close()
