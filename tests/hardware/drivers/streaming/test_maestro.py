@@ -116,7 +116,7 @@ def test_a_board_that_never_answers_is_told_how_to_be_set() -> None:
 def test_a_channel_that_the_board_keeps_back_is_told() -> None:
     far = Bench(MaestroModel(most=4 * 1400))
     driver = _driver(far)
-    with pytest.raises(HardwareError, match="channel 0 of the Maestro stays at 1400 us where 1500 us are wanted"):
+    with pytest.raises(HardwareError, match="channel 0 of the Maestro stays at 1400 us instead of 1500 us"):
         driver.connect(POSE)
     driver.close()
 
