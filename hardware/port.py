@@ -1,4 +1,4 @@
-"""The doorway to pyserial: lines to controllers, by device name or by URL, whose failures are told in one sentence."""
+"""The only user of pyserial: lines to controllers, by device name or URL. Each failure is one clear sentence."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ def _why_not(name: str, error: Exception) -> str:
     if number is None and error.__context__ is not None and error.__context__.args:  # a termios.error has no errno
         number = error.__context__.args[0]
     if number in (errno.ENOTTY, errno.EISDIR):
-        return "it is no serial port; plan ports lists those there are"
+        return "this is not a serial port; plan ports lists those there are"
     if number in (errno.ENOENT, errno.ENODEV, errno.ENXIO):
         devices = ", ".join(port.device for port in plugged_in())
         return "there is no such port; " + (f"plugged in: {devices}" if devices else "nothing is plugged in")
@@ -151,7 +151,7 @@ def _permission(device: Path) -> str:
         group = device.group()
     if group == "root":
         return "ask whoever administers this computer"
-    return f"join the group that may: sudo usermod -aG {group} $USER, then log in anew"
+    return f"join the group that may open it: sudo usermod -aG {group} $USER, then log in again"
 
 
 def _reason(error: Exception) -> str:

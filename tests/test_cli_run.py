@@ -100,14 +100,14 @@ def test_a_dry_run_says_what_would_be_sent_and_sends_nothing(
     [
         (["--driver", "maestro"], "--driver maestro needs --port; plan ports lists what is plugged in"),
         (["--driver", "marionette"], "there is no driver 'marionette'; there are sim, mujoco, native, "),
-        (["--port", "/dev/ttyUSB0"], "a simulated arm is at no port"),
+        (["--port", "/dev/ttyUSB0"], "a simulated arm has no port"),
         (["--driver", "ssc32", "--port", "loop://", "--fast"], "--fast goes with --driver sim or mujoco"),
         (
             ["--driver", "ssc32", "--port", "loop://", "--picture", "d.png"],
             "--picture goes with --driver sim or mujoco",
         ),
-        (["--driver", "ssc32", "--port", "loop://", "--baud", "0"], "'0' is no speed of a line"),
-        (["--driver", "ssc32", "--port", "loop://", "--baud", "fast"], "'fast' is no speed of a line"),
+        (["--driver", "ssc32", "--port", "loop://", "--baud", "0"], "'0' is not a baud rate"),
+        (["--driver", "ssc32", "--port", "loop://", "--baud", "fast"], "'fast' is not a baud rate"),
         (["--resume", "--from-stroke", "2"], "leave out --from-stroke"),
         (["--resume"], "there is nothing to resume: no journal"),
         (["--from-stroke", "10"], "there is no stroke 10; the drawing has 0 to 9"),
@@ -192,7 +192,7 @@ def test_where_no_journal_can_be_kept_it_draws_all_the_same_and_says_so(
 ) -> None:
     taps_csv.with_name("traj.csv.sim.journal").mkdir()
     assert main(["run", str(taps_csv), "--fast"]) == 0
-    assert "there will be nothing for --resume to go by: cannot write" in capsys.readouterr().err
+    assert "--resume will not be able to go on: cannot write" in capsys.readouterr().err
 
 
 @pytest.mark.skipif(not Path("/dev/ptmx").exists(), reason="needs pseudo-terminals")
@@ -312,15 +312,15 @@ def test_where_all_is_drawn_nothing_is_left_to_resume(
     taps_csv: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Stopped on the way back to the park pose."""
-    from planner.cli.keeping import Keeping
+    from planner.cli.run_journal import RunJournal
 
-    def stop(keeping: Keeping, stroke: int) -> None:
-        told(keeping, stroke)
+    def stop(journal: RunJournal, stroke: int) -> None:
+        finished(journal, stroke)
         if stroke == 9:
             signal.raise_signal(signal.SIGTERM)
 
-    told = Keeping.finished
-    monkeypatch.setattr(Keeping, "finished", stop)
+    finished = RunJournal.finished
+    monkeypatch.setattr(RunJournal, "finished", stop)
     assert main(["run", str(taps_csv), "--fast"]) == 130
     assert "all strokes are drawn; there is nothing left for --resume" in capsys.readouterr().err
     assert main(["run", str(taps_csv), "--fast", "--resume"]) == 0
@@ -361,7 +361,7 @@ def test_every_arm_can_be_rehearsed_with_real_servos(
     assert main([str(drawing), "-o", str(csv), "--quiet", "--arm", arm]) == 0
     assert main(["run", str(csv), "--fast", "--servos", "real"]) == 0
     described = arm in ("drawing_arm", "drawing_arm_2022", "so101")
-    assert ("says neither servo nor bus" in capsys.readouterr().err) is not described
+    assert ("does not describe the servos" in capsys.readouterr().err) is not described
     assert main(["run", str(csv), "--dry-run"]) == 0
     assert ("the arm file says nothing of them" in capsys.readouterr().out) is not described
 

@@ -79,7 +79,7 @@ def test_a_second_run_of_a_trajectory_is_refused_by_name_until_the_first_is_gone
 
 def test_a_dry_run_and_another_arm_may_go_on_beside_it(csv: Path, running: subprocess.Popen[bytes]) -> None:
     assert main(["run", str(csv), "--driver", "maestro", "--dry-run"]) == 0
-    with pty_line(Ssc32Model()) as far, claim(claim_of_port("/dev/another"), "drawing"):
+    with pty_line(Ssc32Model()) as far, claim(claim_of_port(str(csv.with_name("another"))), "drawing"):
         assert main(["run", str(csv), "--driver", "ssc32", "--port", far.name, "--from-stroke", "9", "--quiet"]) == 0
 
 
@@ -156,12 +156,12 @@ def test_a_pipe_is_drawn_without_a_journal_and_never_resumed(
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     assert main(["run", str(pipe), "--fast", "--resume"]) == 2  # at once, though nobody writes
-    assert "cannot be told whether it is what was being drawn" in capsys.readouterr().err
+    assert "--resume cannot know whether it has changed" in capsys.readouterr().err
     writer = threading.Thread(target=lambda: pipe.write_bytes(csv.read_bytes()))
     writer.start()
     assert main(["run", str(pipe), "--fast"]) == 0
     writer.join()
-    assert "there will be nothing for --resume to go by" in capsys.readouterr().err
+    assert "--resume will not be able to go on" in capsys.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["pipe", "traj.csv"]
 
 
@@ -179,7 +179,7 @@ def test_standard_input_gets_no_journal_even_where_it_is_a_file(csv: Path, optio
             check=False,
         )
     assert done.returncode == (2 if options else 0)
-    assert "--resume to go by" in done.stderr or "cannot be told" in done.stderr
+    assert "--resume will not be able to go on" in done.stderr or "--resume cannot know" in done.stderr
     assert sorted(Path("/dev").glob("*.journal*")) == before
     assert list(csv.parent.iterdir()) == [csv]
 
@@ -187,14 +187,14 @@ def test_standard_input_gets_no_journal_even_where_it_is_a_file(csv: Path, optio
 def test_a_pipe_in_a_journals_place_holds_nothing_up(csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
     os.mkfifo(journal_path(csv, simulated=True))
     assert main(["run", str(csv), "--fast", "--quiet"]) == 0
-    assert "there will be nothing for --resume to go by" in capsys.readouterr().err
+    assert "--resume will not be able to go on" in capsys.readouterr().err
     assert main(["run", str(csv), "--fast", "--resume"]) == 2
 
 
 def test_a_name_too_long_for_a_journal_is_drawn_without_one(csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
     longest = csv.rename(csv.with_name("x" * 248 + ".csv"))
     assert main(["run", str(longest), "--fast", "--quiet"]) == 0
-    assert "there will be nothing for --resume to go by" in capsys.readouterr().err
+    assert "--resume will not be able to go on" in capsys.readouterr().err
     assert main(["run", str(longest), "--fast", "--resume"]) == 2
     assert "File name too long" in capsys.readouterr().err
 
@@ -231,6 +231,6 @@ def test_strokes_in_doubt_are_drawn_again_and_told(csv: Path, capsys: pytest.Cap
     )
     assert main(["run", str(csv), "--fast", "--resume"]) == 0
     assert (
-        "going on from stroke 4; strokes 4 to 6 were sent, but the controller was not heard to have drawn so far: "
-        "drawn again, unless you see the ink and take --from-stroke 7 instead"
+        "going on from stroke 4; strokes 4 to 6 were sent, but not confirmed by the controller: "
+        "drawn again, unless you see the ink and use --from-stroke 7 instead"
     ) in capsys.readouterr().err

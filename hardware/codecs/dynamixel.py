@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from hardware.codecs.crc import UMTS, crc16
 from hardware.codecs.status import Status
 
 _HEADER = b"\xff\xff\xfd\x00"
@@ -17,10 +18,8 @@ STATUS_SIZE = 11
 """Bytes of an answer, without what was asked for."""
 _LONGEST = 64
 """An answer that says that it is longer is noise."""
-_CRC16 = 0x8005
-"""x^16 + x^15 + x^2 + 1, bits highest first, from 0."""
 _FAULTS = {
-    1: "could not carry out what it was told",
+    1: "could not carry out a command",
     2: "an instruction that it does not know",
     3: "a wrong CRC",
     4: "a value out of its range",
@@ -68,7 +67,7 @@ def take_status(received: bytearray) -> Status | None:
         if plausible and len(received) < size:
             return None
         packet = bytes(received[:size])
-        if plausible and int.from_bytes(packet[-2:], "little") == _crc(packet[:-2]):
+        if plausible and int.from_bytes(packet[-2:], "little") == crc16(packet[:-2], *UMTS):
             del received[:size]
             error, *data = packet[8:-2].replace(_STUFFING, _STUFFED)
             return Status(packet[4], _in_words(error), bytes(data))
@@ -80,24 +79,7 @@ def _packet(servo: int, instruction: int, parameters: bytes) -> bytes:
     """Stuffing keeps a header from appearing inside; the CRC is over what is sent."""
     stuffed = (bytes((instruction,)) + parameters).replace(_STUFFED, _STUFFING)
     packet = _HEADER + bytes((servo,)) + (len(stuffed) + 2).to_bytes(2, "little") + stuffed
-    return packet + _crc(packet).to_bytes(2, "little")
-
-
-def _crc_of_byte(byte: int) -> int:
-    crc = byte << 8
-    for _ in range(8):
-        crc = (crc << 1 ^ _CRC16 if crc & 0x8000 else crc << 1) & 0xFFFF
-    return crc
-
-
-_CRC_TABLE = tuple(map(_crc_of_byte, range(256)))
-
-
-def _crc(packet: bytes) -> int:
-    crc = 0
-    for byte in packet:
-        crc = (crc << 8 & 0xFFFF) ^ _CRC_TABLE[crc >> 8 ^ byte]
-    return crc
+    return packet + crc16(packet, *UMTS).to_bytes(2, "little")
 
 
 def _in_words(error: int) -> tuple[str, ...]:

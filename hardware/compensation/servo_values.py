@@ -1,7 +1,7 @@
-"""From joint positions to what servos are told, and back: pulses in microseconds, or counts on a bus.
+"""From joint positions to commanded servo values, and back: pulses in microseconds, or counts on a bus.
 
-What a servo is told is a monotone curve of its own position, which turns with the joint or against it. Nothing
-outside a servo's range is ever returned: it is an error that names joint, value and range.
+The value is a monotone curve of the servo's own position, which turns with the joint or against it. A value outside a
+servo's range is never returned: it raises an error that names joint, value and range.
 """
 
 from __future__ import annotations
@@ -16,22 +16,22 @@ from planner.arrays import FloatArray
 from planner.errors import ArmFileError, HardwareError
 
 _ROUNDING = 1e-6
-"""Beyond its range by no more than this, in us or counts, a value is at its end: angles come from converted degrees."""
+"""A value beyond its range by no more than this, in us or counts, is at its end: angles come from converted degrees."""
 
-_LEAP = 0.05
-"""Of a servo's range: so far beyond it may lean unpowered against its stop, and be taken back at once."""
+_JUMP = 0.05
+"""Share of a servo's range. An unpowered servo may rest against its stop so far outside, and jumps back at once."""
 
 _COUNT = 1.0
-"""Servos on a bus are told whole counts."""
+"""The step of servos on a bus, which take whole counts."""
 
 _Described = TypeVar("_Described", Servo, BusServo)
 
 
 @dataclass(frozen=True, slots=True)
 class _Curve:
-    """What one servo is told, by its own position: `points` ascend in position and are strictly monotone in value.
+    """The value of one servo by its own position: `points` ascend in position and are strictly monotone in value.
 
-    step, dead_band: in what it is told; backlash: rad or mm.
+    step, dead_band: in the unit of the value; backlash: rad or mm.
     """
 
     joint: Joint
@@ -45,7 +45,7 @@ class _Curve:
 
 
 class Calibration:
-    """What the servos of an arm are told. `unit`: "us" or "counts"; addresses: the channel or bus id of each joint."""
+    """The servo values of an arm. `unit`: "us" or "counts"; addresses: the channel or bus id of each joint."""
 
     def __init__(self, unit: str, addresses: tuple[int, ...], curves: tuple[_Curve, ...]) -> None:
         self.unit, self.addresses = unit, addresses
@@ -53,23 +53,23 @@ class Calibration:
 
     @property
     def ranges(self) -> FloatArray:
-        """(n_joints, 2): least and most that each servo is ever told."""
+        """(n_joints, 2): least and most value of each servo."""
         return np.array([(curve.low, curve.high) for curve in self._curves])
 
     @property
     def reach(self) -> FloatArray:
-        """(n_joints, 2): least and most position, rad or mm, that each servo can be told."""
+        """(n_joints, 2): least and most position of each servo, rad or mm."""
         ends = self.to_joints(self.ranges.T).T
         return np.sort(ends, axis=1)
 
     @property
     def steps(self) -> FloatArray:
-        """(n_joints,) the least difference that each servo can be told, 0 where there is none."""
+        """(n_joints,) the resolution of each servo's value, 0 where it is not known."""
         return np.array([curve.step for curve in self._curves])
 
     @property
     def dead_bands(self) -> FloatArray:
-        """(n_joints,) differences that each servo lets be, in what it is told."""
+        """(n_joints,) differences of value that each servo does not correct."""
         return np.array([curve.dead_band for curve in self._curves])
 
     @property
@@ -82,22 +82,22 @@ class Calibration:
 
         Errors: HardwareError naming joint, value and range for the first one outside its servo's range.
         """
-        columns = [_told(curve, positions[..., k], self.unit) for k, curve in enumerate(self._curves)]
+        columns = [_commanded(curve, positions[..., k], self.unit) for k, curve in enumerate(self._curves)]
         return np.stack(columns, axis=-1)
 
     def within(self, values: FloatArray) -> FloatArray:
-        """Where servos stand by what they tell, (n_joints,), moved to the ends of their ranges where just beyond.
+        """Measured values (n_joints,), moved to the ends of their ranges where they are just outside.
 
-        Errors: HardwareError naming joint, value and range of one that stands further beyond than a leap may go.
+        Errors: HardwareError naming joint, value and range of one that is further outside.
         """
         low, high = self.ranges.T
         inside: FloatArray = np.clip(values, low, high)
-        astray = np.abs(values - inside) > _LEAP * (high - low)
+        astray = np.abs(values - inside) > _JUMP * (high - low)
         if astray.any():
             k = int(np.argmax(astray))
             raise HardwareError(
-                f"joint {self._curves[k].joint.name} stands at {values[k]:g} {self.unit}, outside its "
-                f"range of {low[k]:g} to {high[k]:g} {self.unit}; move it inside by hand, unpowered"
+                f"joint {self._curves[k].joint.name} is at {values[k]:g} {self.unit}, outside its "
+                f"range of {low[k]:g} to {high[k]:g} {self.unit}; switch off its power and move it inside by hand"
             )
         return inside
 
@@ -131,7 +131,7 @@ def count_calibration(arm: Arm) -> Calibration:
 
 
 def own_calibration(arm: Arm) -> Calibration:
-    """The arm's servos, told by pulses or on a bus, whichever its file describes more of.
+    """The arm's servos, moved by pulses or on a bus, whichever its file describes more of.
 
     Errors: ArmFileError naming the key that a joint lacks.
     """
@@ -191,7 +191,7 @@ def _count_curve(joint: Joint, servo: BusServo) -> _Curve:
     return _Curve(joint, 1, points[np.argsort(positions)], low, high, _COUNT, servo.dead_band_counts, servo.backlash)
 
 
-def _told(curve: _Curve, positions: FloatArray, unit: str) -> FloatArray:
+def _commanded(curve: _Curve, positions: FloatArray, unit: str) -> FloatArray:
     values = _interpolated(curve.direction * positions, curve.points[:, 0], curve.points[:, 1])
     beyond = ~((values >= curve.low - _ROUNDING) & (values <= curve.high + _ROUNDING))  # no number is beyond, too
     if np.any(beyond):

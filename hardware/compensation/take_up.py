@@ -33,16 +33,16 @@ def taken_up(
     course of those each joint, wherever in its slack it stands, is drawn to the far side and then pushed to that which
     it is needed on; in the course of these set points come back to where the joints are.
     """
-    told = positions.copy()
+    commanded = positions.copy()
     for k in np.flatnonzero(slack > 0).tolist():
-        told[:, k] += _joint(
+        commanded[:, k] += _joint(
             positions[:, k],
             float(slack[k]),
             float(max_velocity[k]) * period_s * _ALLOWANCE,
             float(max_acceleration[k]) * period_s**2 * _ALLOWANCE,
             rest,
         )
-    return told
+    return commanded
 
 
 def _joint(positions: FloatArray, slack: float, most_step: float, most_change: float, rest: int) -> FloatArray:

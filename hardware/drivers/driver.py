@@ -9,37 +9,38 @@ from planner.arrays import FloatArray
 
 
 class Driver(Protocol):
-    """An arm that goes where it is told. Positions are (n_joints,) in chain order, rad or mm.
+    """An arm that goes to commanded positions, (n_joints,) in chain order, rad or mm.
 
     Every method may raise HardwareError.
     """
 
     ahead_s: float
-    """How long before its time a set point has to be handed over: 0 for controllers without a queue, which move at
-    once. Where there is a queue, playing is paced by it, not by the host's clock."""
+    """How long before its time a set point has to be sent: 0 for controllers without a queue, which move at once. A
+    queue sets the pace of playing, not the host's clock."""
 
     def open(self) -> None:
         """Open the line, if it is not open yet, without a byte on it."""
 
     def connect(self, pose: FloatArray) -> None:
-        """Open the line, attach the servos one after another at `pose` and stand there.
+        """Open the line, attach the servos one after another, and return when they are at `pose`.
 
-        Hobby servos leap to the pose, so it should be where the arm was parked; servos that tell where they are go
+        Hobby servos jump to the pose, so it should be where the arm was parked; servos that measure their position go
         there slowly.
         """
 
     def send(self, positions: FloatArray, duration_s: float) -> None:
-        """The joints are to reach `positions` `duration_s` after they reached those sent before.
+        """Have the joints reach `positions` `duration_s` after they reach those sent before.
 
         Waits while the controller's queue is full.
         """
 
     def executed(self) -> int:
         """How many set points sent so far are known to have been reached: the controller has said so, or has answered
-        after it had the time to reach them. What a line has taken is not known to have been reached."""
+        after it had the time to reach them. A set point that is only written to the line does not count."""
 
     def flush(self) -> None:
-        """Return when everything sent is known to have been reached. Errors: HardwareError where that is not heard."""
+        """Return when everything sent is known to have been reached. Errors: HardwareError if the controller does not
+        confirm it."""
 
     def emergency_stop(self) -> None:
         """Stop moving now and hold. Never raises because the arm is stopped already."""
@@ -48,7 +49,7 @@ class Driver(Protocol):
         """Hold the last set point and let go of the line. Allowed at any time, and more than once."""
 
     def statistics(self) -> list[str]:
-        """Lines about the link for people: frames, retransmissions, under-runs, lateness."""
+        """Lines about the link for people: frames, retransmissions, under-runs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,4 +72,4 @@ class Remembering(Driver, Protocol):
     def recall(self, earlier: Tally | None) -> int | None:
         """How many set points of the run `earlier` were reached, None where the controller remembers another run or
         none, or nothing is asked but whether it is there. Before `connect`, which makes it forget; returns once the arm
-        stands."""
+        is at rest."""

@@ -33,14 +33,14 @@ _STREAMING: dict[str, Callable[[Arm], Controller]] = {
     "feetech": feetech_bus,
     "dynamixel": dynamixel_bus,
 }
-TELL_WHERE_THEY_STAND = ("feetech", "dynamixel")
-"""Servos of these leap nowhere when they are attached."""
+MEASURE_POSITIONS = ("feetech", "dynamixel")
+"""Servos of these measure where they are, so that they do not jump when they are attached."""
 
 DRIVERS = (*SIMULATORS, _NATIVE, *_STREAMING)
 
 
 def calibration_of(name: str, arm: Arm) -> Calibration | None:
-    """What the servos of that driver are told; None for an arm that is only simulated and says nothing of servos.
+    """The servo values of that driver; None for an arm that is only simulated and says nothing of servos.
 
     Errors: ArmFileError where the arm file does not say how joints are moved.
     """

@@ -1,5 +1,4 @@
-"""Going from one resting configuration to another with the pen in the air and nobody in a hurry: to the drawing and
-away."""
+"""A slow transfer from one configuration at rest to another with the pen in the air: to the drawing and away."""
 
 from __future__ import annotations
 
@@ -8,6 +7,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from hardware.motion.minimum_jerk import least_duration_s, minimum_jerk
 from hardware.motion.stopping import lift, slow_down
 from hardware.motion.tip import link_nodes_mm
 from planner.arms.arm import Arm
@@ -15,12 +15,12 @@ from planner.arrays import FloatArray
 from planner.errors import PlanError
 
 _SHARE = 0.2
-"""Of every limit of speed, acceleration and jerk: where the arm really stands may be anybody's guess."""
+"""Of every limit of speed, acceleration and jerk: where the arm really is may not be known."""
 _LIFTS = (1.0, 2.0, 4.0, 8.0)
-"""How far up both ends are taken, in lift heights, where the straight way would come too near the paper."""
+"""How far up both ends are taken, in lift heights, where the straight line would come too near the paper."""
 _SAME = 1e-7
 _BEYOND = 0.01
-"""In rad or mm: servos round where they stand."""
+"""In rad or mm: servos round their position."""
 _GRAZE_MM = 0.01
 """So much below the clearance, or below the paper, is rounding."""
 
@@ -29,10 +29,10 @@ def slow_transfer(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float)
     """Set points (n, n_joints) at `rate_hz` from rest at `start`, itself left out, to rest at `goal`; none if they
     are the same.
 
-    All joints go straight to their goals, their progress being 10u^3 - 15u^4 + 6u^5, and keep to a fifth of every
-    limit; couplings, being affine, hold all along. The tip stays at or above the clearance and no link dips below
-    the paper; an end that is lower, or from which the straight way would be, is left or come to vertically.
-    Errors: PlanError where no such way is found.
+    All joints go straight to their goals, with the progress of `minimum_jerk`, and keep to a fifth of every limit;
+    couplings, being affine, hold all along. The tip stays at or above the clearance and no link dips below the paper.
+    The arm leaves or reaches an end vertically if it is lower, or if the straight line from there would be.
+    Errors: PlanError where no such path is found.
     """
     if np.allclose(start, goal, rtol=0.0, atol=_SAME):
         return np.empty((0, arm.n_joints))
@@ -44,22 +44,22 @@ def slow_transfer(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float)
         line = _straight(arm, np.concatenate((start[None], up))[-1], np.concatenate((goal[None], down))[-1], rate_hz)
         points = np.concatenate((up, line, np.concatenate((goal[None], down))[-2::-1]))
         heights = link_nodes_mm(arm, line)[:, :, 2]
-        independent_of_paper = heights.min() >= min(-_GRAZE_MM, link_nodes_mm(arm, ends)[:, :, 2].min())
+        clear_of_paper = heights.min() >= min(-_GRAZE_MM, link_nodes_mm(arm, ends)[:, :, 2].min())
         if (
             heights[:, -1].min() >= arm.pen.clearance_mm - _GRAZE_MM
-            and independent_of_paper
+            and clear_of_paper
             and slow_down(arm, np.concatenate((start[None], points)), 1 / rate_hz) <= 1
         ):
             return points
     raise PlanError(
-        f"no way was found for arm '{arm.name}' from ({in_words(arm, start)}) to ({in_words(arm, goal)}) "
-        "with its pen in the air (another [park] pose in its file may do)"
+        f"no path was found for arm '{arm.name}' from ({in_words(arm, start)}) to ({in_words(arm, goal)}) "
+        "with its pen in the air (another [park] pose in its file may help)"
     )
 
 
 def come_from(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -> FloatArray:
-    """As `slow_transfer`, from wherever the arm happens to stand: straight where no way through the air is found, or
-    none can begin because a joint was moved by hand beyond its limits."""
+    """As `slow_transfer`, from wherever the arm happens to be: straight where no path through the air is found, or a
+    joint was moved by hand beyond its limits."""
     if np.all((start >= arm.minimum - _BEYOND) & (start <= arm.maximum + _BEYOND)):
         with suppress(PlanError):
             return slow_transfer(arm, start, goal, rate_hz)
@@ -67,22 +67,8 @@ def come_from(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -> 
 
 
 def _straight(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -> FloatArray:
-    """The peaks of the polynomial's derivatives are 15/8, 10/sqrt(3) and 60."""
-    distance = np.abs(goal - start) / _SHARE
-    duration_s = float(
-        np.max(
-            np.stack(
-                (
-                    15 / 8 * distance / arm.max_velocity,
-                    np.sqrt(10 / math.sqrt(3) * distance / arm.max_acceleration),
-                    np.cbrt(60 * distance / arm.max_jerk),
-                )
-            )
-        )
-    )
-    n = max(math.ceil(duration_s * rate_hz), 1)
-    u = np.arange(1, n + 1)[:, None] / n
-    points: FloatArray = start + (10 * u**3 - 15 * u**4 + 6 * u**5) * (goal - start)
+    n = max(math.ceil(least_duration_s(arm, np.abs(goal - start) / _SHARE) * rate_hz), 1)
+    points: FloatArray = start + minimum_jerk(n) * (goal - start)
     points[-1] = goal
     return points
 

@@ -1,4 +1,4 @@
-"""Stopping in the middle of a drawing: brake along the planned path, then take the pen straight up; and going on.
+"""Stop in the middle of a drawing: brake along the planned path, then take the pen straight up; and go on.
 
 Braking along the path leaves no ink where none was planned, and lifting from rest keeps the two motions
 apart, so that each can be held within the arm's limits. Both ends of a stop are at samples of the path, so
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hardware.motion.minimum_jerk import minimum_jerk
 from hardware.motion.tip import tip_at
 from hardware.motion.vertical_lift import vertical_lift
 from planner.arms.arm import Arm
@@ -85,7 +86,7 @@ def lift(arm: Arm, start: FloatArray, rate_hz: float, to_mm: float | None = None
     """Set points (n, n_joints) at `rate_hz` from rest at `start` straight up to rest at the height `to_mm` of the tip,
     the arm's lift height if None.
 
-    The height follows 10u^3 - 15u^4 + 6u^5, slowed down until the joints are within their limits (for a
+    The height follows `minimum_jerk`, slowed down until the joints are within their limits (for a
     second at most). Empty where the pen is up already, and where the arm cannot rise.
     """
     height_mm = (arm.pen.lift_mm if to_mm is None else to_mm) - float(tip_at(arm, start).position_mm[2])
@@ -98,8 +99,7 @@ def lift(arm: Arm, start: FloatArray, rate_hz: float, to_mm: float | None = None
     coefficients = np.linalg.lstsq(height**powers, configurations - start, rcond=None)[0]
 
     def at(n: int) -> FloatArray:
-        u = np.arange(1, n + 1)[:, None] / n
-        points: FloatArray = start + (10 * u**3 - 15 * u**4 + 6 * u**5) ** powers @ coefficients
+        points: FloatArray = start + minimum_jerk(n) ** powers @ coefficients
         return points
 
     n, points, rest = 2, at(2), np.repeat(start[None], 3, axis=0)

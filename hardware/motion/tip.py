@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, sin
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,51 +27,48 @@ class Tip:
 
 
 def tip_at(arm: Arm, joints: FloatArray) -> Tip:
-    """The tip at `joints` (n_joints,), rad or mm, by the product of the standard DH rows and the
-    geometric Jacobian: z x (tip - origin) for a revolute joint about z, z for a prismatic one along it."""
-    to_paper = arm.paper.T_paper_base
-    rotation, origin = to_paper[:3, :3], to_paper[:3, 3]
-    joint_axes, joint_origins = [], []
-    for joint, value in zip(arm.joints, joints.tolist(), strict=True):
-        revolute = joint.kind is JointKind.REVOLUTE
-        joint_axes.append(rotation[:, 2])
-        joint_origins.append(origin)
-        theta = joint.theta_rad + (value if revolute else 0.0)
-        d_mm = joint.d_mm + (0.0 if revolute else value)
-        ct, st, ca, sa = cos(theta), sin(theta), cos(joint.alpha_rad), sin(joint.alpha_rad)
-        origin = origin + rotation @ np.array([joint.a_mm * ct, joint.a_mm * st, d_mm])
-        rotation = rotation @ np.array([[ct, -st * ca, st * sa], [st, ct * ca, -ct * sa], [0.0, sa, ca]])
-    axis = rotation @ np.array(arm.pen.tool_axis)
-    z, turns = np.array(joint_axes), np.array([joint.kind is JointKind.REVOLUTE for joint in arm.joints])[:, None]
-    return Tip(
-        origin,
-        axis,
-        np.where(turns, np.cross(z, origin - np.array(joint_origins)), z).T,
-        np.where(turns, np.cross(z, axis), 0.0).T,
-    )
+    """The tip at `joints` (n_joints,), rad or mm, with the geometric Jacobian: z x (tip - origin) for a revolute joint
+    about z, z for a prismatic one along it."""
+    *frames, tip = _frames(arm, joints[None])
+    position_mm, axis = tip.origin[0], np.array(arm.pen.tool_axis) @ np.concatenate((tip.x, tip.y, tip.z))
+    z, origins = (np.concatenate(columns) for columns in zip(*((one.z, one.origin) for one in frames), strict=True))
+    arms = np.stack((position_mm - origins, np.broadcast_to(axis, z.shape)))
+    turns = np.array([joint.kind is JointKind.REVOLUTE for joint in arm.joints])[:, None]
+    of_position, of_axis = np.where(turns, np.cross(z, arms), np.stack((z, np.zeros_like(z))))
+    return Tip(position_mm, axis, of_position.T, of_axis.T)
 
 
 def link_nodes_mm(arm: Arm, positions: FloatArray) -> FloatArray:
     """(n, 2 n_joints, 3) where links bend at `positions` (n, n_joints), rad or mm: for each joint the end of its
-    offset d and the end of its length a, the last of all being the tip. The DH rows' product, as in `tip_at`."""
-    to_paper = arm.paper.T_paper_base
-    rotation, origin = to_paper[:3, :3], np.repeat(to_paper[None, :3, 3], len(positions), axis=0)
-    nodes = []
-    for joint, value in zip(arm.joints, positions.T, strict=True):
-        revolute = joint.kind is JointKind.REVOLUTE
-        theta = joint.theta_rad + (value if revolute else np.zeros_like(value))
-        d_mm = joint.d_mm + (np.zeros_like(value) if revolute else value)
-        ct, st, ca, sa = np.cos(theta), np.sin(theta), cos(joint.alpha_rad), sin(joint.alpha_rad)
-        bend = origin + rotation[..., 2] * d_mm[:, None]
-        length = np.stack((joint.a_mm * ct, joint.a_mm * st, np.zeros_like(ct)), axis=-1)
-        origin = bend + (rotation @ length[..., None])[..., 0]
-        rotation = rotation @ np.stack(
-            (
-                np.stack((ct, -st * ca, st * sa), axis=-1),
-                np.stack((st, ct * ca, -ct * sa), axis=-1),
-                np.broadcast_to([0.0, sa, ca], (len(positions), 3)),
-            ),
-            axis=-2,
+    offset d and the end of its length a, the last of all being the tip."""
+    _, *frames = _frames(arm, positions)
+    return np.stack([node for frame in frames for node in (frame.bend, frame.origin)], axis=1)
+
+
+class _Frame(NamedTuple):
+    """The frame at the end of a link in n configurations: axes, origin and where the link bends, each (n, 3)."""
+
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
+    bend: FloatArray
+    origin: FloatArray
+
+
+def _frames(arm: Arm, positions: FloatArray) -> list[_Frame]:
+    """The base's frame and that of every link at `positions` (n, n_joints), seen from the paper. Each standard DH row
+    is Rz(theta) Tz(d) Tx(a) Rx(alpha)."""
+    x, y, z, origin = (np.broadcast_to(column, (len(positions), 3)) for column in arm.paper.T_paper_base[:3].T)
+    frames = [_Frame(x, y, z, origin, origin)]
+    for joint, value in zip(arm.joints, positions.T[:, :, None], strict=True):
+        turn, slide = (value, 0.0 * value) if joint.kind is JointKind.REVOLUTE else (0.0 * value, value)
+        cosine, sine = np.cos(joint.theta_rad + turn), np.sin(joint.theta_rad + turn)
+        x, y = cosine * x + sine * y, cosine * y - sine * x
+        bend = origin + (joint.d_mm + slide) * z
+        origin = bend + joint.a_mm * x
+        y, z = (
+            cos(joint.alpha_rad) * y + sin(joint.alpha_rad) * z,
+            cos(joint.alpha_rad) * z - sin(joint.alpha_rad) * y,
         )
-        nodes += [bend, origin]
-    return np.stack(nodes, axis=1)
+        frames.append(_Frame(x, y, z, bend, origin))
+    return frames

@@ -1,10 +1,10 @@
-"""Configurations that take the pen straight up from wherever it is, for when nobody planned a lift from there."""
+"""Configurations that take the pen straight up from any configuration, where the trajectory has no lift."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from hardware.motion.tip import tip_at
+from hardware.motion.tip import Tip, tip_at
 from planner.arms.arm import Arm, PenHold
 from planner.arrays import FloatArray
 
@@ -27,29 +27,29 @@ def vertical_lift(arm: Arm, start: FloatArray, height_mm: float) -> FloatArray:
     limit held there and the rest solved again. Couplings hold throughout. The result is shorter where the
     arm cannot rise that far, and holds at least `start` itself.
     """
-    here = tip_at(arm, start)
+    here = tip = tip_at(arm, start)
     steps = max(round(height_mm / _STEP_MM), 1)
     independent = list(arm.independent_joints)
     configurations = [start]
-    offset = start - arm.complete(
-        start[independent]
-    )  # what file rounding or an uncoupled configuration leaves of the coupling
+    # What file rounding or an uncoupled configuration leaves of the coupling.
+    offset = start - arm.complete(start[independent])
     for step in range(1, steps + 1):
         goal_mm = here.position_mm + np.array([0.0, 0.0, height_mm * step / steps])
         configuration = configurations[-1]
         for _ in range(_CORRECTIONS):
-            configuration = _towards(arm, configuration, goal_mm, here.axis, offset)
-        if np.linalg.norm(tip_at(arm, configuration).position_mm - goal_mm) > _DRIFT_MM:
+            configuration = _towards(arm, configuration, tip, goal_mm, here.axis, offset)
+            tip = tip_at(arm, configuration)
+        if np.linalg.norm(tip.position_mm - goal_mm) > _DRIFT_MM:
             break
         configurations.append(configuration)
     return np.array(configurations)
 
 
 def _towards(
-    arm: Arm, configuration: FloatArray, goal_mm: FloatArray, axis: FloatArray, offset: FloatArray
+    arm: Arm, configuration: FloatArray, tip: Tip, goal_mm: FloatArray, axis: FloatArray, offset: FloatArray
 ) -> FloatArray:
-    """One damped Gauss-Newton step from `configuration`, within the limits of every joint, mimic ones included."""
-    tip = tip_at(arm, configuration)
+    """One damped Gauss-Newton step from `configuration`, where the tip is at `tip`, within the limits of every joint,
+    mimic ones included."""
     miss, jacobian = goal_mm - tip.position_mm, tip.position_jacobian
     if arm.pen.hold is PenHold.TOOL_AXIS:
         miss = np.concatenate((miss, _AXIS_WEIGHT_MM * (axis - tip.axis)))
@@ -67,9 +67,8 @@ def _towards(
         moved[independent[active]] += change
         moved = arm.complete(moved[independent]) + offset
         over = np.maximum(arm.minimum - moved, moved - arm.maximum)
-        over[np.maximum(arm.minimum - configuration, configuration - arm.maximum) >= over] = (
-            0.0  # already there, not worse
-        )
+        before = np.maximum(arm.minimum - configuration, configuration - arm.maximum)
+        over[before >= over] = 0.0  # beyond it already, and no further now
         if not (over > 0).any():
             return moved
         # Take out the independent joint that does most towards the worst excess, directly or through a coupling.

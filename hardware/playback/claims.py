@@ -1,7 +1,7 @@
-"""Who has the arm: a run claims what it draws and the port that it draws by, and a second run is told by whom.
+"""Claims on an arm: a run claims its trajectory and its port, and a second run learns which run has them.
 
-The operating system keeps a claim, as a lock on a file, for as long as the process lives: one that was killed leaves
-nothing in anybody's way, though its file may stay. What the file says is for people alone.
+The operating system keeps a claim, as a lock on a file, for as long as the process lives: a run that was killed blocks
+nobody, though its file may stay. What the file says is only for people to read.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def claim_of_port(name: str) -> Path:
 
 @contextmanager
 def claim(path: Path, doing: str) -> Iterator[None]:
-    """Hold the claim until this ends; `doing` is what another run is told of this one.
+    """Hold the claim until this ends; `doing` is what another run reads about this one.
 
     Where no such file can be made there is no claim: then no journal can be written there either, and what holds a
     port is up to the system alone. Errors: Claimed.
@@ -76,7 +76,7 @@ else:
             try:
                 found = os.fstat(descriptor)
                 if not stat.S_ISREG(found.st_mode):
-                    raise OSError("it is no file")
+                    raise OSError("it is not a file")
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 if _is_there(path, found):  # and was not removed by the run that had it before
                     return descriptor

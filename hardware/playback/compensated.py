@@ -1,6 +1,6 @@
-"""From where joints are meant to be to where their servos are sent: slack taken up, and lag led.
+"""From where joints are meant to be to where their servos are sent: slack is taken up, and lag is led.
 
-The whole program is known before it is played, so that all this is done in advance, for every driver alike.
+The whole program is known before it is played, so all this is done in advance, in the same way for every driver.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ _SETTLING_S = 0.5
 def compensated(arm: Arm, program: Program, calibration: Calibration) -> Program:
     """The program with set points that make the arm's joints go where `program` wants them.
 
-    It begins and ends with a rest; `meant` keeps what the joints are to do. The same for an arm that was not
-    calibrated: the slack in its file is a guess, and an arm with less of it would draw worse for it. Set points stay
-    within what servos may be told, and the joints' limits of speed and acceleration hold.
+    It begins and ends with a rest; `meant` keeps what the joints are to do. For an arm that was not calibrated
+    nothing changes: the slack in its file is a guess, and an arm with less of it would draw worse for it. Set points
+    stay within the ranges of servos, and the joints' limits of speed and acceleration hold.
     """
     slack, delay_s = half_slack(arm), delays_s(arm)
     if arm.accuracy is None:
         return program
     rest = int(np.ceil((_SETTLING_S + delay_s.max()) * program.rate_hz))
     meant = np.pad(program.positions, ((rest, rest), (0, 0)), mode="edge")
-    told = taken_up(meant, slack, arm.max_velocity, arm.max_acceleration, 1 / program.rate_hz, rest)
-    sent = np.clip(led(told, delay_s * program.rate_hz), *calibration.reach.T)
+    commanded = taken_up(meant, slack, arm.max_velocity, arm.max_acceleration, 1 / program.rate_hz, rest)
+    sent = np.clip(led(commanded, delay_s * program.rate_hz), *calibration.reach.T)
     return replace(
         program,
         positions=sent,

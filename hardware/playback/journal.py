@@ -1,10 +1,10 @@
-"""What of a trajectory has been drawn, kept beside its file so that it outlives whatever may happen to the host.
+"""A journal beside a trajectory: what of it has been drawn, whatever happens to the host.
 
 A line of JSON for each thing to remember, read by hardware/playback/journal_entry.py. The first says what is being
 drawn, from where on and by which run. The second, which is as long as ever and is written over, says how many set
 points the arm has reached. The others, only ever added, say how the controller counts, where in the trajectory the set
 points are, up to which stroke all has been sent, which stroke comes next because all before it are known to be drawn
-and, at last, how the run ended. Each is on disk before the next.
+and, at the end, how the run ended. Each is on disk before the next.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from typing import IO, cast
 
 from hardware.clock import Clock
 from hardware.drivers.driver import Tally
-from hardware.playback.course import Piece, piece, sample_after
 from hardware.playback.journal_entry import COMPLETE, VERSION, Entry
+from hardware.playback.sample_map import Piece, piece, sample_after
 from planner.arrays import FloatArray
 from planner.errors import OutputError, TrajectoryFileError
 from planner.trajectory import written_aside
@@ -48,8 +48,8 @@ def digest(trajectory: Path) -> str:
 
 
 class Journal:
-    """A journal being written. What is told while the arm moves is put on disk by a thread of its own: a slow disk
-    never makes a set point late. What cannot be written is an error at the end, and makes nothing untrue."""
+    """A journal being written. A thread of its own writes while the arm moves, so that a slow disk never makes a set
+    point late. What cannot be written is an error at the end; what is written stays true."""
 
     def __init__(self, path: Path, beginning: Entry, clock: Clock, port: str = "") -> None:
         """Begin a new journal in place of any other, on disk when this returns. Errors: OutputError."""
@@ -69,11 +69,11 @@ class Journal:
         self._counts_at, self._end = len(first), len(first) + len(counts)
         self._counts = self._noted = (0, 0)
         self._noted_s = -math.inf
-        self._course: list[Piece] = []
-        self._course_until: int | None = None
+        self._map: list[Piece] = []
+        self._map_until: int | None = None
         self._failure: OSError | None = None
         if os.path.lexists(path) and not path.is_file():
-            raise OutputError(str(path), "it is no file")  # a pipe would be waited for
+            raise OutputError(str(path), "it is not a file")  # a pipe would be waited for
         with written_aside(path) as file:
             cast("IO[str]", file).write((first + counts).decode())
         try:
@@ -102,13 +102,13 @@ class Journal:
         """The controller counts this run so, and remembers its count."""
         self._writer.submit(self._add, _line(tally=asdict(tally)))
 
-    def onward(self, first: int, samples: FloatArray) -> None:
+    def planned(self, first: int, samples: FloatArray) -> None:
         """Set points from number `first` on, counted from 1, will be at these `samples` (n,) of the trajectory."""
-        self._course.append(piece(first, samples))
-        self._writer.submit(self._change_course, first, _line(course=self._course[-1]))
+        self._map.append(piece(first, samples))
+        self._writer.submit(self._change_map, first, _line(course=self._map[-1]))
 
     def wait(self) -> None:
-        """Until all that was told is on disk. Errors: OutputError if some of it is not, ever."""
+        """Until everything said so far is on disk. Errors: OutputError if some of it is not, ever."""
         self._writer.submit(lambda: None).result()
         if self._failure is not None:
             raise OutputError(str(self._path), self._failure.strerror or str(self._failure)) from self._failure
@@ -138,14 +138,14 @@ class Journal:
     def _overwrite_counts(self, reached: int, sent: int) -> None:
         """Too often to wait for the disk: it outlives this process, and a power failure costs a few of them."""
         line = _counts_line(
-            reached=reached, sent=sent, course_until=self._course_until, at=sample_after(self._course, reached)
+            reached=reached, sent=sent, course_until=self._map_until, at=sample_after(self._map, reached)
         )
         self._write(self._counts_at, line, durable=False)
 
-    def _change_course(self, first: int, line: bytes) -> None:
-        """Where there is no room for that, what was told of set points from `first` on must not be believed."""
-        if not self._add(line) and self._course_until is None:
-            self._course_until = first - 1
+    def _change_map(self, first: int, line: bytes) -> None:
+        """Where there is no room for that, what was said before of set points from `first` on no longer holds."""
+        if not self._add(line) and self._map_until is None:
+            self._map_until = first - 1
             self._overwrite_counts(*self._noted)
 
     def _add(self, line: bytes) -> bool:
@@ -166,13 +166,13 @@ class Journal:
         return True
 
 
-def _line(**told: object) -> bytes:
-    return json.dumps(told).encode() + b"\n"
+def _line(**facts: object) -> bytes:
+    return json.dumps(facts).encode() + b"\n"
 
 
-def _counts_line(**told: float | None) -> bytes:
+def _counts_line(**counts: float | None) -> bytes:
     """As long whatever it says."""
-    return _line(**told).rstrip().ljust(_COUNTS_LENGTH) + b"\n"
+    return _line(**counts).rstrip().ljust(_COUNTS_LENGTH) + b"\n"
 
 
 def _sync_folder(folder: Path) -> None:

@@ -1,9 +1,9 @@
 """What a journal says: which trajectory a run was drawing, how far it is known to have come, and how it ended.
 
 A journal is a file of lines, each a JSON object. The first names its version, the trajectory and the run; the others
-tell what has come to be known since, and each says all that it has to say. A line that is torn is passed over, and
-another first line begins anew. Version 1 knows whole strokes alone; version 2 counts set points as well, where the
-controller remembers its count.
+say what has become known since, and each is complete in itself. A line that is torn is passed over, and another first
+line begins anew. Version 1 knows only whole strokes; version 2 counts set points as well, where the controller
+remembers its count.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from pathlib import Path
 from typing import Any
 
 from hardware.drivers.driver import Tally
-from hardware.playback.course import Piece, sample_after
+from hardware.playback.sample_map import Piece, sample_after
 from planner.errors import TrajectoryFileError
 
 VERSION = 2
 COMPLETE = "complete"
 _READABLE = (1, 2)
 _MOST = 1 << 48
-"""Nothing that a journal counts comes to so many."""
+"""More than a journal ever counts."""
 _MOST_BYTES = 1 << 26
 """No journal is as long as that: a stroke adds some fifty bytes, a pause some hundred."""
 _LONGEST_TEXT = 1000
-_UNTOLD: dict[str, Any] = {
+_UNSAID: dict[str, Any] = {
     "ended": "",
     "sample": None,
     "tally": None,
@@ -38,7 +38,7 @@ _UNTOLD: dict[str, Any] = {
     "at": None,
     "sent_stroke": -1,
 }
-"""What holds where no line has told of it."""
+"""What holds where no line says otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,8 +77,8 @@ class Entry:
         return range(self.next_stroke, self.last_sent + 1)
 
     @property
-    def converged(self) -> bool:
-        """Whether the run was there to see all that it sent being reached."""
+    def all_reached(self) -> bool:
+        """Whether the run ended by itself and saw everything that it sent being reached."""
         return bool(self.ended) and self.reached == self.sent
 
     def come_to(self, reached: int) -> float | None:
@@ -96,18 +96,18 @@ def read_journal(path: Path) -> Entry | None:
         return None
     except OSError as error:
         raise TrajectoryFileError(str(path), None, f"cannot be read: {error.strerror}") from error
-    told: dict[str, Any] = {}
+    facts: dict[str, Any] = {}
     course: list[Any] = []
     for line in lines:
         said = _said(line)
         if "journal" in said:
-            told, course = dict(_UNTOLD), []
+            facts, course = dict(_UNSAID), []
         if "course" in said:
             course.append(said.pop("course"))
-        told |= said
+        facts |= said
     try:
-        if told["journal"] in _READABLE:
-            return _entry(told, course)
+        if facts["journal"] in _READABLE:
+            return _entry(facts, course)
     except (KeyError, TypeError, ValueError, OverflowError):
         pass
     raise TrajectoryFileError(str(path), None, "is not a journal of this program; draw without --resume to replace it")
@@ -117,7 +117,7 @@ def _content(path: Path) -> bytes:
     """Errors: OSError; TrajectoryFileError where it cannot be a journal. A pipe is not waited for."""
     with open(path, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0))) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise TrajectoryFileError(str(path), None, "is no file, and so no journal; remove it")
+            raise TrajectoryFileError(str(path), None, "is not a file, so it is not a journal; remove it")
         content = file.read(_MOST_BYTES)
     if len(content) == _MOST_BYTES:
         raise TrajectoryFileError(str(path), None, "is too long for a journal; draw without --resume to replace it")
@@ -133,24 +133,24 @@ def _said(line: bytes) -> dict[str, Any]:
     return said if isinstance(said, dict) else {}
 
 
-def _entry(told: dict[str, Any], course: list[Any]) -> Entry:
+def _entry(facts: dict[str, Any], course: list[Any]) -> Entry:
     """Errors: KeyError, TypeError, ValueError, OverflowError where something is missing or not what it should be."""
-    tally = None if told["tally"] is None else Tally(**told["tally"])
-    at = None if told["at"] is None else float(told["at"])
+    tally = None if facts["tally"] is None else Tally(**facts["tally"])
+    at = None if facts["at"] is None else float(facts["at"])
     pieces = tuple(tuple((int(count), float(sample)) for count, sample in one) for one in course)
-    words = [told[key] for key in ("sha256", "arm", "driver", "ended")]
+    words = [facts[key] for key in ("sha256", "arm", "driver", "ended")]
     counts = [
-        *(told[key] for key in ("next_stroke", "reached", "sent")),
+        *(facts[key] for key in ("next_stroke", "reached", "sent")),
         *(asdict(tally).values() if tally else ()),
         *(count for one in pieces for count, _ in one),
-        *(told[key] for key in ("sample", "course_until") if told[key] is not None),
+        *(facts[key] for key in ("sample", "course_until") if facts[key] is not None),
     ]
     if not all(isinstance(word, str) for word in words):
         raise TypeError
-    if not all(type(count) is int for count in (*counts, told["sent_stroke"])):
+    if not all(type(count) is int for count in (*counts, facts["sent_stroke"])):
         raise TypeError
     if (
-        not all(0 <= count < _MOST for count in (*counts, told["sent_stroke"] + 1))
+        not all(0 <= count < _MOST for count in (*counts, facts["sent_stroke"] + 1))
         or not all(pieces)
         or not all(math.isfinite(sample) for one in (*pieces, [(0, at or 0.0)]) for _, sample in one)
     ):
@@ -159,15 +159,15 @@ def _entry(told: dict[str, Any], course: list[Any]) -> Entry:
         words[0],
         _shown(words[1]),
         words[2],
-        told["next_stroke"],
+        facts["next_stroke"],
         _shown(words[3]),
-        told["sent_stroke"],
-        told["sample"],
+        facts["sent_stroke"],
+        facts["sample"],
         tally,
         pieces,
-        told["reached"],
-        told["sent"],
-        told["course_until"],
+        facts["reached"],
+        facts["sent"],
+        facts["course_until"],
         at,
     )
 

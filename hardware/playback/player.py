@@ -1,10 +1,9 @@
-"""Playing a program: every set point at its own time, and a pause, a stop or an e-stop whenever one is asked for."""
+"""Playing a program: every set point at its own time, and a pause, a stop or an emergency stop on request."""
 
 from __future__ import annotations
 
 from array import array
-from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 import numpy as np
@@ -14,17 +13,19 @@ from hardware.drivers.driver import Driver
 from hardware.motion.slow_transfer import slow_transfer
 from hardware.motion.stopping import brake, lift, lower, set_off
 from hardware.motion.tip import tip_at
+from hardware.playback.confirmation import Confirmation
+from hardware.playback.observer import Observer, Progress
 from hardware.playback.program import Program
-from hardware.playback.progress import End, Played, Progress, Request
+from hardware.playback.request import Request
+from hardware.playback.result import End, PlaybackResult
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError, PlanError
-from planner.trajectory import TRAVELLING
 
 _STALL_S = 0.1
-"""After a stall longer than this the rest is played that much later: catching up would be a leap."""
-_THERE = 1e-6
-"""So far from the park pose, in rad or mm, the arm is there."""
+"""After a stall longer than this the rest is played that much later: to catch up would be a jump."""
+_PARKED_WITHIN = 1e-6
+"""The arm is parked when it is this close to the park pose, in rad or mm."""
 
 
 def play(
@@ -34,29 +35,18 @@ def play(
     clock: Clock,
     *,
     request: Callable[[], Request] = lambda: Request.GO,
-    report: Callable[[Progress], None] = lambda progress: None,
-    connected: Callable[[], None] = lambda: None,
-    sent: Callable[[int], None] = lambda stroke: None,
-    finished: Callable[[int], None] = lambda stroke: None,
-    onward: Callable[[int, FloatArray], None] = lambda first, samples: None,
-    reached: Callable[[int, int], None] = lambda executed, sent: None,
-) -> Played:
+    observers: Sequence[Observer] = (),
+) -> PlaybackResult:
     """Play `program`: set point k at k / rate after the start, later only by pauses and stalls.
 
-    `request()` is asked before every set point. On a pause the arm brakes along the path and the pen goes straight up;
-    then it comes down where it was and goes on from there. On a stop it brakes, lifts and goes to the park pose. On an
-    e-stop it holds where it is. If something fails that is not the arm, such as `report`, it is stopped before the
-    error goes on its way. `report(progress)` is called after every set point and has to be quick;
-    `connected()` once the arm is ready to play, `sent(stroke)` once all of a stroke has been sent, `finished(stroke)`
-    once it is known to be drawn. `onward(first, samples)` says where in the trajectory set points from number `first`
-    on (counted from 1) will be, before they are sent; `reached(executed, sent)` how many set points are known to have
-    been reached, of how many. The driver is closed in any case.
-    Errors: HardwareError.
+    `request()` is asked before every set point. On a pause the arm brakes along the path and lifts the pen straight up;
+    then it lowers the pen where it was and goes on from there. On a stop it brakes, lifts and goes to the park pose. On
+    an emergency stop it holds where it is. If something other than the arm fails, such as an observer, the arm stops
+    before the error is raised. The driver is closed in any case. Errors: HardwareError, and those of observers.
     """
-    playing = _Playing(program, arm, driver, clock, request, report, sent, finished, onward, reached)
+    playing = _Playing(program, arm, driver, clock, request, observers)
     try:
         driver.connect(program.park)
-        connected()
         playing.begin()
         try:
             end = playing.run()
@@ -74,7 +64,7 @@ def play(
             driver.flush()
             raise
         playing.note_finished()
-        return playing.outcome(end)
+        return playing.result(end)
     except KeyboardInterrupt:
         driver.emergency_stop()
         raise
@@ -96,29 +86,23 @@ class _Playing:
         driver: Driver,
         clock: Clock,
         request: Callable[[], Request],
-        report: Callable[[Progress], None],
-        sent: Callable[[int], None],
-        finished: Callable[[int], None],
-        onward: Callable[[int, FloatArray], None],
-        reached: Callable[[int, int], None],
+        observers: Sequence[Observer],
     ) -> None:
         self._program, self._arm, self._driver, self._clock = program, arm, driver, clock
-        self._request, self._report, self._stroke_sent, self._finished = request, report, sent, finished
-        self._onward, self._tell_reached = onward, reached
-        stroke = program.stroke
-        self._last_of_stroke = np.flatnonzero((stroke != TRAVELLING) & (stroke != np.append(stroke[1:], TRAVELLING)))
-        self._strokes_sent = 0
-        self._unconfirmed: deque[tuple[int, int]] = deque()
-        self._sent_at: deque[tuple[int, int]] = deque()
-        self._next = self._sent = self._ticks = self._reached = 0
+        self._request, self._observers = request, observers
+        self._confirmation = Confirmation(program.stroke)
+        self._next = self._sent = 0
         self._position, self._off_path = program.park, False
         self._begin_s = self._start_s = 0.0
         self._late_s = array("d")
-        self.stalls = 0
+        self._stalls = 0
 
     def begin(self) -> None:
+        """The driver is connected."""
+        for observer in self._observers:
+            observer.connected()
         self._begin_s = self._start_s = self._clock.now_s()
-        self._onward(1, self._program.sample)
+        self._plan(self._program.sample)
 
     def run(self) -> End:
         while self._next < len(self._program.positions):
@@ -134,9 +118,7 @@ class _Playing:
         return End.PLAYED
 
     def tell_nobody(self) -> None:
-        self._report = lambda progress: None
-        self._stroke_sent = self._finished = lambda stroke: None
-        self._onward, self._tell_reached = (lambda first, samples: None), (lambda executed, sent: None)
+        self._observers = ()
 
     def stop(self) -> None:
         """Brake, lift, park; where no way to the park pose is found the arm holds with its pen up."""
@@ -154,28 +136,28 @@ class _Playing:
     def note_finished(self) -> None:
         """Tell of the strokes that have been drawn, as far as the driver knows."""
         executed = self._driver.executed()
-        while self._unconfirmed and self._unconfirmed[0][0] <= executed:
-            self._finished(self._unconfirmed.popleft()[1])
-        while self._sent_at and self._sent_at[0][0] <= executed:
-            self._reached = self._sent_at.popleft()[1]
-        self._tell_reached(executed, self._sent)
+        for stroke in self._confirmation.confirm(executed):
+            for observer in self._observers:
+                observer.finished(stroke)
+        for observer in self._observers:
+            observer.reached(executed, self._sent)
 
-    def outcome(self, end: End) -> Played:
+    def result(self, end: End) -> PlaybackResult:
         late = np.percentile(self._late_s, (50, 99, 100)).tolist() if self._late_s else (0.0, 0.0, 0.0)
-        return Played(
+        return PlaybackResult(
             end,
             self._next,
             len(self._program.positions),
             self._clock.now_s() - self._begin_s,
             (late[0], late[1], late[2]),
-            self.stalls,
+            self._stalls,
             float(tip_at(self._arm, self._position).position_mm[2]),
             self._parked() and end is not End.EMERGENCY_STOPPED,
             tuple(self._driver.statistics()),
         )
 
     def _parked(self) -> bool:
-        return np.allclose(self._position, self._program.park, rtol=0.0, atol=_THERE)
+        return np.allclose(self._position, self._program.park, rtol=0.0, atol=_PARKED_WITHIN)
 
     def _pause(self) -> None:
         """Rest with the pen up until the request changes; if it is to go on, be back at full pace."""
@@ -187,19 +169,19 @@ class _Playing:
         while (request := self._request()) is Request.PAUSE:
             self._send(self._position)  # a controller that hears nothing would take the host for dead
             self.note_finished()
-            self._tell(paused=True)
+            self._tell_progress(paused=True)
         if request is not Request.GO:
             self._off_path = True
             return
         if not self._next:
             self._send_all(lowering)
-            self._onward(self._sent + 1, self._program.sample)
+            self._plan(self._program.sample)
             return
         ramp = set_off(self._arm, self._program.positions, at, rate_hz)
         ahead = np.concatenate(
             (np.full(len(lowering), float(at)), ramp.at, np.arange(ramp.end + 1.0, len(self._program.positions)))
         )
-        self._onward(self._sent + 1, self._samples(ahead))
+        self._plan(self._samples(ahead))
         self._send_all(lowering)
         self._send_all(ramp.points)
         self._come_to(ramp.end)
@@ -207,14 +189,19 @@ class _Playing:
     def _come_to_rest(self) -> int:
         """Brake from the set point sent last; the one where the arm then rests."""
         if not self._next or self._off_path:
-            self._onward(self._sent + 1, self._program.sample[max(self._next - 1, 0)][None])
+            self._plan(self._program.sample[max(self._next - 1, 0)][None])
             return max(self._next - 1, 0)
         ramp = brake(self._arm, self._program.positions, self._next - 1, self._program.rate_hz)
-        self._onward(self._sent + 1, self._samples(ramp.at))
+        self._plan(self._samples(ramp.at))
         self._send_all(ramp.points)
         self._come_to(ramp.end)
         self._rested()  # working out the lift now costs nothing but a moment's rest
         return ramp.end
+
+    def _plan(self, samples: FloatArray) -> None:
+        """The set points to be sent next are at these samples (n,) of the trajectory."""
+        for observer in self._observers:
+            observer.planned(self._sent + 1, samples)
 
     def _samples(self, at: FloatArray) -> FloatArray:
         """Samples of the trajectory at fractional indices `at` (n,) of the program."""
@@ -229,44 +216,35 @@ class _Playing:
         """The next set point, whether of the program or not, at its time."""
         period_s = 1 / self._program.rate_hz
         if not self._driver.ahead_s:
-            due_s = self._start_s + self._ticks * period_s
+            due_s = self._start_s + self._sent * period_s
             self._clock.sleep_until(due_s)
             late_s = self._clock.now_s() - due_s
             self._late_s.append(late_s)
             if late_s > _STALL_S:
-                self.stalls += 1
+                self._stalls += 1
                 self._start_s += late_s
         if self._request() is Request.EMERGENCY_STOP:
             raise _EmergencyStop
         self._driver.send(point, period_s)
         self._position = point
-        self._ticks += 1
         self._sent += 1
 
     def _come_to(self, index: int) -> None:
-        """The set point `index` of the program, or one that stands for it, has been sent."""
+        """The set point `index` of the program, or one in its place, has been sent."""
         self._next = index + 1
-        while self._strokes_sent < len(self._last_of_stroke) and self._last_of_stroke[self._strokes_sent] <= index:
-            stroke = int(self._program.stroke[self._last_of_stroke[self._strokes_sent]])
-            self._unconfirmed.append((self._sent, stroke))
-            self._strokes_sent += 1
-            self._stroke_sent(stroke)
-        self._sent_at.append((self._sent, index))
+        for stroke in self._confirmation.add(self._sent, index):
+            for observer in self._observers:
+                observer.sent(stroke)
         self.note_finished()
-        self._tell(paused=False)
+        self._tell_progress(paused=False)
 
-    def _tell(self, *, paused: bool) -> None:
-        program = self._program
-        self._report(
-            Progress(
-                self._reached + 1,
-                len(program.positions),
-                int(program.stroke[self._reached]),
-                (len(program.positions) - 1 - self._reached) / program.rate_hz,
-                paused,
-            )
-        )
+    def _tell_progress(self, *, paused: bool) -> None:
+        index, last = self._confirmation.index, len(self._program.positions) - 1
+        stroke, left_s = int(self._program.stroke[index]), (last - index) / self._program.rate_hz
+        progress = Progress(index + 1, last + 1, stroke, left_s, paused)
+        for observer in self._observers:
+            observer.progressed(progress)
 
     def _rested(self) -> None:
-        """The arm stands still: what is sent next is due as soon as it is known."""
-        self._start_s = max(self._start_s, self._clock.now_s() - self._ticks / self._program.rate_hz)
+        """The arm is at rest: the next set point is due as soon as it is known."""
+        self._start_s = max(self._start_s, self._clock.now_s() - self._sent / self._program.rate_hz)

@@ -1,5 +1,5 @@
-"""What has to be true of a trajectory before an arm is let loose on it: the laws of the check that keep arm and pen
-from harm, asked by the check itself, so that both find the same faults and say so in the same words."""
+"""What has to be true of a trajectory before an arm plays it: the laws of the check that protect arm and pen. The check
+itself tests them, so that both find the same faults and use the same words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is played: from where the arm is parked to the drawing, the drawing or the rest of it, and back."""
+"""The program of a run: from the park pose to the drawing, the drawing or the rest of it, and back."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def make_program(
 
     from_stroke: the first to be drawn; the drawing is joined at the highest sample of the travel move before it, from
     rest.
-    from_sample: if not None the drawing is joined there, in the midst of that stroke: the pen comes straight down.
+    from_sample: if not None the drawing is joined there, in the middle of that stroke: the pen comes straight down.
     park: where the arm comes from and goes to; if None it is where the file begins, lifted if the pen is down there.
     Errors: UsageError (no such stroke), PlanError (no way from or to the park pose).
     """
@@ -83,11 +83,11 @@ def make_program(
         sample = np.concatenate(([first / refine], joining.at / refine, sample[joining.end + 1 :]))
     if park is None:
         park = _park(arm, set_points, rate_hz)
-    there, back = slow_transfer(arm, park, descent[0], rate_hz), slow_transfer(arm, body[-1], park, rate_hz)
-    there = np.concatenate((park[None], there, descent[1:]))[:-1]  # it ends where the body begins
-    ends = len(there), len(back)
+    out, back = slow_transfer(arm, park, descent[0], rate_hz), slow_transfer(arm, body[-1], park, rate_hz)
+    out = np.concatenate((park[None], out, descent[1:]))[:-1]  # it ends where the body begins
+    ends = len(out), len(back)
     return Program(
-        np.concatenate((there, body, back)),
+        np.concatenate((out, body, back)),
         np.pad(labels, ends, constant_values=TRAVELLING),
         np.pad(sample, ends, mode="edge"),
         rate_hz,

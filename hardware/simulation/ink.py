@@ -1,4 +1,4 @@
-"""What a pen leaves on the paper, from where the joints have been; and that as an SVG."""
+"""The lines that a pen draws as the joints move, and the same as an SVG."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from hardware.motion.tip import link_nodes_mm
 from planner.arms.arm import Arm
-from planner.arrays import FloatArray
+from planner.arrays import BoolArray, FloatArray
 from planner.trajectory import written_aside
 
 _GIVES = 0.9
@@ -21,18 +21,19 @@ _PEN_MM = 0.4
 def drawn_lines(arm: Arm, positions: FloatArray) -> list[FloatArray]:
     """Lines (n, 2) in arm millimetres that the pen leaves as the joints go through `positions` (n, n_joints).
 
-    Pens give a little: one draws from just below the clearance on, where a planned tip moves straight up or down and
-    a real one is not quite where it should be. A tap is a line of points on one spot.
+    Pens give a little: one draws from just below the clearance on. There a planned tip moves straight up or down, and a
+    real one may be a little off. A tap is a line of points on one spot.
     """
     tip_mm = link_nodes_mm(arm, positions)[:, -1]
-    down = np.concatenate(([False], tip_mm[:, 2] <= _GIVES * arm.pen.clearance_mm, [False]))
+    down = np.concatenate(([False], is_drawing(arm, tip_mm[:, 2]), [False]))
     begins, ends = np.flatnonzero(down[1:] & ~down[:-1]), np.flatnonzero(down[:-1] & ~down[1:])
     return [tip_mm[begin:end, :2] for begin, end in zip(begins, ends, strict=True)]
 
 
-def is_drawing(arm: Arm, height_mm: float) -> bool:
-    """Whether the pen leaves ink with its tip so high above the paper."""
-    return height_mm <= _GIVES * arm.pen.clearance_mm
+def is_drawing(arm: Arm, heights_mm: FloatArray) -> BoolArray:
+    """(n,) whether the pen leaves ink with its tip at `heights_mm` (n,) above the paper."""
+    drawing: BoolArray = heights_mm <= _GIVES * arm.pen.clearance_mm
+    return drawing
 
 
 def write_svg(lines: Sequence[FloatArray], target: Path) -> None:

@@ -112,7 +112,7 @@ class MujocoArm:
             self._mujoco.mj_step(self._model, self._data)
             self._at_s += _STEP_S
             if self._film is not None:
-                self._film.watch(self._data, drawing=is_drawing(self._arm, float(self.tip_mm[2])))
+                self._film.watch(self._data, drawing=bool(is_drawing(self._arm, self.tip_mm[2:])[0]))
 
     def _record(self) -> None:
         self._recorder.add(self._at_s, self._data.ctrl / self._scale, self._data.qpos / self._scale)

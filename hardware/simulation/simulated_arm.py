@@ -1,4 +1,4 @@
-"""An arm without metal: its joints run after their set points as well as its servos can."""
+"""A simulated arm: its joints follow their set points as well as its servos can."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Servos(StrEnum):
     IDEAL = "ideal"
     """Nothing between them and their set points but their limits of speed."""
     REAL = "real"
-    """Those of an arm that need not be as its file says: told after the file, they do what the arm makes of it, with
+    """Those of an arm that need not be as its file says: commanded by the file, they do what the arm makes of it, with
     resolution, dead band, backlash and lag."""
     LAGGING = "lagging"
     """A lag alone, for an arm file that says nothing of servos."""
@@ -34,11 +34,11 @@ class Servos(StrEnum):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Recording:
-    """What a simulated arm was told and what it did.
+    """What a simulated arm was commanded to do and what it did.
 
-    times_s: (n,) clock time of each set point. set_points and positions: (n, n_joints), rad or mm,
-    where the joints were to be and where they stood when told. Each time that everything was awaited
-    adds a row with the last set point and where the joints came to rest.
+    times_s: (n,) clock time of each set point. set_points and positions: (n, n_joints), rad or mm, where the joints
+    were to be and where they were when the command came. Each `flush` adds a row with the last set point and where the
+    joints came to rest.
     """
 
     times_s: FloatArray
@@ -73,7 +73,7 @@ class Recorder:
 
 
 class SimulatedArm:
-    """A driver that moves nothing and remembers everything."""
+    """A driver that moves nothing and records everything."""
 
     ahead_s = 0.0
 
@@ -106,7 +106,7 @@ class SimulatedArm:
         self._at_s = self._clock.now_s()
 
     def send(self, positions: FloatArray, duration_s: float) -> None:
-        """The joints set off at once, as fast as they can, for there is no controller that would spread the way."""
+        """The joints move at once, as fast as they can: no controller spreads the move over `duration_s`."""
         self._refuse_beyond_stops(positions)
         self._follow(self._connected_target())
         self._target = positions.copy()
@@ -138,7 +138,7 @@ class SimulatedArm:
         return self._target
 
     def _follow(self, target: FloatArray) -> None:
-        """What the joints have done since they were looked at last."""
+        """Let the joints move as they have since the last call."""
         now_s = self._clock.now_s()
         self._servos.run(target, now_s - self._at_s)
         self._at_s = now_s
@@ -198,7 +198,7 @@ class _Lagging:
         return float(np.max(away / self._max_velocity + _SETTLED_LAGS * self._lag_s))
 
     def _wanted(self, target: FloatArray) -> FloatArray:
-        """Where the joints would be if their motors did as they are told."""
+        """Where the joints would be if their motors followed the commands exactly."""
         return target.copy()
 
     def _pull(self, target: FloatArray) -> FloatArray:
@@ -216,21 +216,21 @@ class _Real(_Lagging):
 
     def __init__(self, arm: Arm, true_arm: Arm) -> None:
         super().__init__(arm, true_arm)
-        self._told, self._true = own_calibration(arm), own_calibration(true_arm)
+        self._assumed, self._true = own_calibration(arm), own_calibration(true_arm)
         self._step, self._dead_band, self._play = self._true.steps, self._true.dead_bands, self._true.backlash
 
     def _wanted(self, target: FloatArray) -> FloatArray:
         return self._true.to_joints(self._rounded(target))
 
     def _rounded(self, target: FloatArray) -> FloatArray:
-        told = self._told.to_servos(target)
+        commanded = self._assumed.to_servos(target)
         step = np.where(self._step > 0, self._step, 1.0)
-        return np.where(self._step > 0, np.round(told / step) * step, told)
+        return np.where(self._step > 0, np.round(commanded / step) * step, commanded)
 
     def _pull(self, target: FloatArray) -> FloatArray:
-        told = self._rounded(target)
-        wanted = self._true.to_joints(told)
-        dead_band = np.abs(self._true.to_joints(told + self._dead_band) - wanted)
+        commanded = self._rounded(target)
+        wanted = self._true.to_joints(commanded)
+        dead_band = np.abs(self._true.to_joints(commanded + self._dead_band) - wanted)
         error = wanted - self._motors
         pull: FloatArray = np.sign(error) * np.maximum(np.abs(error) - dead_band, 0.0)
         return pull

@@ -11,9 +11,9 @@ from planner.errors import UsageError
 
 _DESCRIPTION = """\
 Play a trajectory in real time: on the simulated arm, or on a real one with --driver and --port. It is examined
-first: its joints have to be the arm's, every sample within their limits and every servo within its range. The arm
-comes slowly from its park pose and goes back there. While it plays, space or p pauses (the pen goes up) and resumes,
-q or Ctrl-C stops and parks, and x, Esc or a second Ctrl-C stops at once and holds."""
+first: its joints must be the arm's, every sample within their limits and every servo within its range. The arm comes
+slowly from its park pose and goes back there. While it plays, space or p pauses (the pen goes up) and resumes, q or
+Ctrl-C stops and parks, and x, Esc or a second Ctrl-C stops at once and holds."""
 
 _EPILOG = """\
 examples:
@@ -45,12 +45,15 @@ def parser() -> Parser:
         help="where the controller is: a serial port as plan ports lists them, or a URL such as socket://HOST:PORT",
     )
     options.add_argument(
-        "--baud", type=_baud, metavar="RATE", help="of the serial line (default: the controller's usual)"
+        "--baud",
+        type=_baud,
+        metavar="RATE",
+        help="baud rate of the serial line (default: the usual one of the controller)",
     )
     options.add_argument(
         "--arm",
         metavar="NAME|FILE",
-        help="play it on this arm, whose joints have to be the same (default: the one in the file)",
+        help="play it on this arm, which must have the same joints (default: the one in the file)",
     )
     options.add_argument(
         "--speed-factor",
@@ -63,8 +66,8 @@ def parser() -> Parser:
     options.add_argument(
         "--resume",
         action="store_true",
-        help="go on where an earlier run is known to have come to, from its journal: at the stroke "
-        "that it did not finish, on native in its midst",
+        help="go on where an earlier run ended, by its journal: at the stroke that it did not finish, on native in the "
+        "middle of it",
     )
     options.add_argument(
         "--dry-run", action="store_true", help="examine everything and say what would be sent, but send nothing"
@@ -106,13 +109,13 @@ def parser() -> Parser:
 
 def _seed(text: str) -> int:
     if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"'{text}' is no whole number from 0 on")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 0 on")
     return int(text)
 
 
 def _baud(text: str) -> int:
     if not text.isdecimal() or int(text) == 0:
-        raise argparse.ArgumentTypeError(f"'{text}' is no speed of a line, such as 115200")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a baud rate, such as 115200")
     return int(text)
 
 
@@ -124,7 +127,7 @@ def refuse_contradictions(options: argparse.Namespace) -> None:
         raise UsageError(f"there is no driver '{options.driver}'; there are {', '.join(DRIVERS)}")
     simulated = options.driver in SIMULATORS
     if simulated and (options.port or options.baud):
-        raise UsageError("a simulated arm is at no port; name what is there with --driver")
+        raise UsageError("a simulated arm has no port; name the controller there with --driver")
     if not simulated and not options.port and not options.dry_run:
         raise UsageError(f"--driver {options.driver} needs --port; plan ports lists what is plugged in")
     for name, given, drivers in (
@@ -136,11 +139,11 @@ def refuse_contradictions(options: argparse.Namespace) -> None:
         if given and options.driver not in drivers:
             raise UsageError(f"--{name} goes with --driver {' or '.join(drivers)}, not with {options.driver}")
     if options.film and options.film.suffix.lower() not in _FILMS:
-        raise UsageError(f"{options.film}: a film ends in {' or '.join(_FILMS)}")
+        raise UsageError(f"{options.film}: the name of a film ends in {' or '.join(_FILMS)}")
     for name, given in (("true-arm", options.true_arm is not None), ("seed", options.seed is not None)):
         if given and options.servos != "real":
             raise UsageError(f"--{name} goes with --servos real")
     if options.true_arm and options.seed is not None:
         raise UsageError("--true-arm says what the arm really is; leave out --seed")
     if options.resume and options.from_stroke is not None:
-        raise UsageError("--resume finds its stroke by itself; leave out --from-stroke")
+        raise UsageError("--resume finds the stroke itself; leave out --from-stroke")

@@ -12,7 +12,7 @@ from hardware.simulation.ink import drawn_lines, write_svg
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.cli.output import check_target
-from planner.trajectory import Trajectory
+from planner.cli.run_job import Job
 
 
 def check_pictures(targets: Sequence[Path], source: Path) -> None:
@@ -26,15 +26,10 @@ def check_pictures(targets: Sequence[Path], source: Path) -> None:
 
 
 def save_pictures(
-    targets: Sequence[Path],
-    trajectory: Trajectory,
-    arm: Arm,
-    set_points: FloatArray,
-    true_arm: Arm,
-    positions: FloatArray,
-    first_stroke: int,
+    targets: Sequence[Path], job: Job, true_arm: Arm, positions: FloatArray, first_stroke: int
 ) -> list[str]:
-    """Write what was drawn as the joints of `true_arm` went through `positions`; how like what was wanted, in words.
+    """Write what was drawn as the joints of `true_arm` went through `positions` (n, n_joints), rad or mm; its drawing
+    error in words.
 
     An .svg holds what was drawn at its true size, any other picture shows it beside what was wanted from
     `first_stroke` on. Errors: OutputError.
@@ -42,7 +37,7 @@ def save_pictures(
     from planner.checking.drawing_error import drawing_error
 
     drawn = drawn_lines(true_arm, positions)
-    wanted = list(_wanted(trajectory, arm, set_points, first_stroke))
+    wanted = list(_wanted(job, first_stroke))
     text = drawing_error(drawn, wanted).text()
     for target in targets:
         if _is_svg(target):
@@ -51,8 +46,8 @@ def save_pictures(
             from planner.plots.drawing_error import plot_drawing_error
             from planner.plots.figure_file import save_figure
 
-            heading = trajectory.drawing or "trajectory"
-            save_figure(plot_drawing_error(wanted, drawn, heading, f"drawn on {arm.name}, {text}"), target)
+            heading = job.trajectory.drawing or "trajectory"
+            save_figure(plot_drawing_error(wanted, drawn, heading, f"drawn on {job.arm.name}, {text}"), target)
     return [f"what was drawn is {text}"]
 
 
@@ -60,9 +55,10 @@ def _is_svg(target: Path) -> bool:
     return target.suffix.lower() == ".svg"
 
 
-def _wanted(trajectory: Trajectory, arm: Arm, set_points: FloatArray, first_stroke: int) -> Iterator[FloatArray]:
+def _wanted(job: Job, first_stroke: int) -> Iterator[FloatArray]:
     """The tip's path on the paper, stroke by stroke."""
-    samples = np.flatnonzero(trajectory.stroke >= first_stroke)
-    tip_mm = link_nodes_mm(arm, set_points[samples])[:, -1, :2]
-    begins = np.flatnonzero(np.diff(trajectory.stroke[samples], prepend=-1))
+    stroke = job.trajectory.stroke
+    samples = np.flatnonzero(stroke >= first_stroke)
+    tip_mm = link_nodes_mm(job.arm, job.positions[samples])[:, -1, :2]
+    begins = np.flatnonzero(np.diff(stroke[samples], prepend=-1))
     yield from np.split(tip_mm, begins[1:])

@@ -1,4 +1,4 @@
-"""`plan run`: the program is played, watched by people and noted in a journal."""
+"""`plan run`: a program is played, shown to people and noted in a journal."""
 
 from __future__ import annotations
 
@@ -9,18 +9,19 @@ from typing import TYPE_CHECKING
 
 from hardware.clock import Clock, InstantClock, WallClock
 from hardware.drivers.driver import Driver
-from hardware.drivers.table import MUJOCO, SIMULATED, TELL_WHERE_THEY_STAND, calibration_of, make_driver
+from hardware.drivers.table import MEASURE_POSITIONS, MUJOCO, SIMULATED, calibration_of, make_driver
 from hardware.motion.slow_transfer import in_words
 from hardware.playback.journal_entry import Entry
+from hardware.playback.observer import Observer, Progress
 from hardware.playback.player import play
 from hardware.playback.program import Program
-from hardware.playback.progress import Played, Progress
+from hardware.playback.result import PlaybackResult
 from hardware.port import Line
 from hardware.simulation.simulated_arm import Recording, Servos, SimulatedArm
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
-from planner.cli.controls import KEYS, controls
-from planner.cli.keeping import Keeping
+from planner.cli.controls import KEYS, Controls, controls
+from planner.cli.run_journal import RunJournal
 from planner.cli.terminal import Show, print_note, print_warnings, progress
 from planner.error_model.random_arm import random_arm
 from planner.errors import HardwareError, UsageError
@@ -33,7 +34,7 @@ _REPORTS_A_SECOND = 10
 
 @dataclass(frozen=True, slots=True)
 class Rig:
-    """What a run plays on, and the clock that it goes by. recording: of a simulated arm, None of a real one."""
+    """The driver that a run plays on, and its clock. recording: of a simulated arm, None for a real one."""
 
     driver: Driver
     clock: Clock
@@ -66,43 +67,26 @@ def set_up(options: argparse.Namespace, arm: Arm, true_arm: Arm) -> Rig:
 
 def play_out(
     options: argparse.Namespace, arm: Arm, program: Program, rig: Rig, beginning: Entry, last_stroke: int
-) -> Played:
-    """What became of the program. Errors: HardwareError, OutputError."""
-    keeping = Keeping(options, beginning, last_stroke, rig.driver, program.rate_hz, rig.clock)
+) -> PlaybackResult:
+    """How playing the program went. Errors: HardwareError, OutputError."""
+    journal = RunJournal(options, beginning, last_stroke, rig.driver, program.rate_hz, rig.clock)
     ended, complete = "broken off", False
     with progress(quiet=options.quiet, single=True) as show:
         try:
             with controls() as wishes:
-
-                def connected() -> None:
-                    if wishes.has_keys and not options.quiet:
-                        print_note(KEYS)
-                    keeping.connected()
-
                 rig.driver.open()
                 if not options.quiet and options.port:
                     print_note(_announced(options, program, arm))
-                keeping.opened()
-                played = play(
-                    program,
-                    arm,
-                    rig.driver,
-                    rig.clock,
-                    request=wishes.request,
-                    report=_reporting(show, rig.driver, program.rate_hz, last_stroke),
-                    connected=connected,
-                    sent=keeping.sent,
-                    finished=keeping.finished,
-                    onward=keeping.onward,
-                    reached=keeping.reached,
-                )
-            ended, complete = played.end.value, played.complete
+                journal.opened()
+                display = _Display(show, rig.driver, program.rate_hz, last_stroke, None if options.quiet else wishes)
+                result = play(program, arm, rig.driver, rig.clock, request=wishes.request, observers=(display, journal))
+            ended, complete = result.end.value, result.complete
         except HardwareError as error:
             ended = str(error)
             raise
         finally:  # before the last words, which a terminal that is stuck may never take
-            keeping.close(ended, complete=complete)
-    return played
+            journal.close(ended, complete=complete)
+    return result
 
 
 def _simulated(options: argparse.Namespace, arm: Arm, true_arm: Arm, clock: Clock) -> SimulatedArm | MujocoArm | None:
@@ -111,7 +95,7 @@ def _simulated(options: argparse.Namespace, arm: Arm, true_arm: Arm, clock: Cloc
         if servos is Servos.REAL and calibration_of(SIMULATED, arm) is None:
             print_warnings(
                 [
-                    f"the file of arm '{arm.name}' says neither servo nor bus of all its joints: their servos "
+                    f"the file of arm '{arm.name}' does not describe the servos of all its joints: they "
                     "lag behind, without dead band, backlash and resolution"
                 ]
             )
@@ -125,31 +109,35 @@ def _simulated(options: argparse.Namespace, arm: Arm, true_arm: Arm, clock: Cloc
 
 
 def _announced(options: argparse.Namespace, program: Program, arm: Arm) -> str:
-    """What is going to happen once the controller answers."""
+    """What will happen once the controller answers."""
     park, approach_s = in_words(arm, program.park), program.approach / program.rate_hz
-    if options.driver in TELL_WHERE_THEY_STAND:
+    if options.driver in MEASURE_POSITIONS:
         return (
-            f"the arm goes slowly from where its servos stand to the park pose ({park}), from which it takes "
+            f"the arm goes slowly from where its servos are to the park pose ({park}), from which it takes "
             f"{approach_s:.1f} s to the drawing"
         )
     return (
-        f"where the arm stands is not known: its servos are attached at the park pose ({park}), from which it "
+        f"the position of the arm is not known: its servos are attached at the park pose ({park}), from which it "
         f"takes {approach_s:.1f} s to the drawing"
     )
 
 
-def _reporting(show: Show, driver: Driver, rate_hz: float, last_stroke: int) -> Callable[[Progress], None]:
-    """Shows progress a few times a second."""
-    between = max(round(rate_hz / _REPORTS_A_SECOND), 1)
-    calls = 0
+class _Display(Observer):
+    """Shows the keys once, where there are any, and progress a few times a second. wishes: None to leave keys out."""
 
-    def report(now: Progress) -> None:
-        nonlocal calls
-        calls += 1
-        if calls % between and now.reached < now.total:
+    def __init__(self, show: Show, driver: Driver, rate_hz: float, last_stroke: int, wishes: Controls | None) -> None:
+        self._show, self._driver, self._last_stroke, self._wishes = show, driver, last_stroke, wishes
+        self._every = max(round(rate_hz / _REPORTS_A_SECOND), 1)
+        self._calls = 0
+
+    def connected(self) -> None:
+        if self._wishes and self._wishes.has_keys:
+            print_note(KEYS)
+
+    def progressed(self, progress: Progress) -> None:
+        self._calls += 1
+        if self._calls % self._every and progress.reached < progress.total:
             return
-        doing = f"stroke {now.stroke} of 0..{last_stroke}" if now.stroke >= 0 else "travelling"
-        state = f"{'paused' if now.paused else doing}, {now.left_s:.0f} s left"
-        show("\n".join((state, *driver.statistics())), now.reached, now.total)
-
-    return report
+        doing = f"stroke {progress.stroke} of 0..{self._last_stroke}" if progress.stroke >= 0 else "travelling"
+        state = f"{'paused' if progress.paused else doing}, {progress.left_s:.0f} s left"
+        self._show("\n".join((state, *self._driver.statistics())), progress.reached, progress.total)

@@ -129,7 +129,7 @@ def test_a_device_without_permission_is_told_with_the_group_that_has_it(terminal
 
 @pytest.mark.parametrize("name", ["/dev/null", "/", __file__])
 def test_what_is_no_serial_port_is_told(name: str) -> None:
-    with pytest.raises(HardwareError, match=f"^{name}: it is no serial port; plan ports lists those there are$"):
+    with pytest.raises(HardwareError, match=f"^{name}: this is not a serial port; plan ports lists those there are$"):
         Line(name).open(9600)
 
 

@@ -1,7 +1,7 @@
 """Go-back-N: every key frame arrives once and in order over a line that damages and loses bytes.
 
 The sender keeps what is not acknowledged, and sends all of it again from where the controller says that something is
-missing, or where no acknowledgement comes (Tanenbaum, Computer Networks, 3.4.2). Credits, the free slots told in
+missing, or where no acknowledgement comes (Tanenbaum, Computer Networks, 3.4.2). Credits, the free slots in
 every acknowledgement, keep it from sending what the controller has no room for.
 """
 

@@ -1,4 +1,4 @@
-"""What a controller without a queue has to be able to do, for the one driver of all of them."""
+"""What the streaming driver needs of a controller without a queue."""
 
 from __future__ import annotations
 
@@ -9,16 +9,19 @@ from hardware.compensation.servo_values import Calibration
 from hardware.port import Port
 from planner.arrays import FloatArray
 
+STAGGER_S = 0.3
+"""Between servos that jump to their first pulse, so that their currents do not add up."""
+
 
 class Question(NamedTuple):
-    """A message that asks how a controller fares, and how many bytes its answer has."""
+    """A message that asks for a controller's state, and how many bytes its answer has."""
 
     message: bytes
     answer_size: int
 
 
 class Controller(Protocol):
-    """Moves servos at once to what it is told. Values are (n_joints,), in the calibration's unit and ranges.
+    """Moves servos at once to commanded values, (n_joints,) in the calibration's unit and ranges.
 
     Methods that are handed a port may raise HardwareError.
     """
@@ -36,22 +39,22 @@ class Controller(Protocol):
     take a few of them."""
 
     def attach(self, port: Port, values: FloatArray, clock: Clock) -> FloatArray:
-        """Make sure that everything answers, and power the servos; where they then stand.
+        """Make sure that everything answers, and power the servos; their values then.
 
-        Those that cannot tell where they are are sent to `values`, one after another.
+        Those that do not measure their position are sent to `values`, one after another.
         """
 
     def set_point(self, values: FloatArray, duration_s: float) -> bytes:
         """The message that sends the servos to `values`, within `duration_s` where the controller can time it."""
 
     def confirm(self, port: Port, values: FloatArray, clock: Clock) -> None:
-        """Return once the servos stand at `values`, as far as the controller knows; HardwareError if they do not."""
+        """Return once the servos are at `values`, as far as the controller knows; HardwareError if they do not."""
 
     def halt(self, port: Port) -> None:
         """The servos hold where they are."""
 
     def question(self, witness: int) -> Question:
-        """What asks witness 0, 1, ... how it fares."""
+        """What asks witness 0, 1, ... for its state."""
 
     def take_answer(self, witness: int, received: bytearray) -> bool:
         """Whether the whole answer to `question(witness)` has come; it is taken from `received`.

@@ -1,4 +1,4 @@
-"""The driver of controllers without a queue: each set point goes out when it is due and is forgotten."""
+"""The driver of controllers without a queue: each set point is sent when it is due."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _COMING_PERIOD_S = 0.02
 
 
 class StreamingDriver:
-    """Sends set points as they come, and asks in between how the controller fares without waiting for the answer.
+    """Sends set points as they come, and in between asks for the controller's state without waiting for the answer.
 
     What is `executed` is what an answer proves: see hardware/drivers/streaming/witness.py.
     """
@@ -49,10 +49,10 @@ class StreamingDriver:
         message = self._controller.set_point(self._controller.calibration.to_servos(positions), duration_s)
         if 0.0 < duration_s < port.seconds(len(message)):
             raise HardwareError(
-                f"{port.name}: a set point is {port.seconds(len(message)) * 1e3:.3g} ms on the line and "
-                f"{duration_s * 1e3:.3g} ms are between two; set controller and --baud to a higher speed"
+                f"{port.name}: a set point takes {port.seconds(len(message)) * 1e3:.3g} ms on the line, but the "
+                f"next one follows after {duration_s * 1e3:.3g} ms; set controller and --baud to a higher speed"
             )
-        self._clock.sleep_until(self._free_s)  # what servos say on a line that they share is not spoken over
+        self._clock.sleep_until(self._free_s)  # servos that share the line may still be answering
         now_s = self._clock.now_s()
         self._witness.listen(port, now_s)
         if self._sent and self._witness.due(now_s):
@@ -82,7 +82,7 @@ class StreamingDriver:
     def statistics(self) -> list[str]:
         return [
             f"{counted(self._sent, 'set point')} in {counted(self._bytes, 'byte')}; the controller answered "
-            f"{self._witness.answered} of {counted(self._witness.asked, 'question')} about how it fares"
+            f"{self._witness.answered} of {counted(self._witness.asked, 'question')} about its state"
         ]
 
     def _connected(self) -> Port:
@@ -90,10 +90,10 @@ class StreamingDriver:
             raise HardwareError(f"{self._line.name}: the line is not open")
         return self._port
 
-    def _come_from(self, standing: FloatArray, pose: FloatArray) -> None:
-        """Slowly from where the servos stand, perhaps with the pen on the paper, to `pose`."""
+    def _come_from(self, measured: FloatArray, pose: FloatArray) -> None:
+        """Slowly from the `measured` values of the servos, perhaps with the pen on the paper, to `pose`."""
         calibration = self._controller.calibration
-        way = come_from(self._arm, calibration.to_joints(standing), pose, 1 / _COMING_PERIOD_S)
+        way = come_from(self._arm, calibration.to_joints(measured), pose, 1 / _COMING_PERIOD_S)
         start_s = self._clock.now_s()
         for k, values in enumerate(calibration.to_servos(way), start=1):
             self._clock.sleep_until(start_s + k * _COMING_PERIOD_S)

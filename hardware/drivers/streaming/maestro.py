@@ -9,14 +9,12 @@ import numpy as np
 from hardware.clock import Clock
 from hardware.codecs import maestro
 from hardware.compensation.servo_values import pulse_calibration
-from hardware.drivers.streaming.controller import Question
+from hardware.drivers.streaming.controller import STAGGER_S, Question
 from hardware.port import Port
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError
 
-_STAGGER_S = 0.3
-"""Between servos that leap to their first pulse, so that their currents do not add up."""
 _ANSWER_S = 0.5
 _SETTLED_US = 1.0
 
@@ -34,17 +32,17 @@ class Maestro:
 
     def attach(self, port: Port, values: FloatArray, clock: Clock) -> FloatArray:
         self._ask(port, maestro.GET_ERRORS)  # of what came before
-        standing = values.copy()
+        measured = values.copy()
         for k, (channel, pulse_us) in enumerate(zip(self.calibration.addresses, values, strict=True)):
             for command in maestro.unlimited(channel):
                 port.write(self._seal(command))
             present_us = self._position_us(port, channel)
             if present_us:
-                standing[k] = present_us
+                measured[k] = present_us
             else:
                 port.write(self._seal(maestro.set_target(channel, pulse_us)))
-                clock.sleep_until(clock.now_s() + _STAGGER_S)
-        return self.calibration.within(standing)
+                clock.sleep_until(clock.now_s() + STAGGER_S)
+        return self.calibration.within(measured)
 
     def set_point(self, values: FloatArray, duration_s: float) -> bytes:
         return b"".join(
@@ -59,8 +57,8 @@ class Maestro:
             present_us = self._position_us(port, channel)
             if abs(present_us - pulse_us) > _SETTLED_US:
                 raise HardwareError(
-                    f"{port.name}: channel {channel} of the Maestro stays at {present_us:g} us where "
-                    f"{pulse_us:g} us are wanted; widen Min and Max of its channel settings"
+                    f"{port.name}: channel {channel} of the Maestro stays at {present_us:g} us instead of "
+                    f"{pulse_us:g} us; widen Min and Max of its channel settings"
                 )
 
     def halt(self, port: Port) -> None:
@@ -75,7 +73,7 @@ class Maestro:
         )
 
     def question(self, witness: int) -> Question:
-        """Its errors, and the pulse of one servo: a board that was reset gives none until it is told anew."""
+        """Its errors, and the pulse of one servo: a board that was reset gives none until its next command."""
         ask_position = maestro.get_position(self.calibration.addresses[0])
         return Question(self._seal(maestro.GET_ERRORS) + self._seal(ask_position), 2 * maestro.REPLY_SIZE)
 
@@ -88,7 +86,7 @@ class Maestro:
         if not maestro.position_us(position):
             raise HardwareError(
                 "the Maestro was reset in the middle of the run; check its power, lift the pen, put "
-                "the arm to where it parks, and go on with --resume"
+                "the arm into its park pose, and go on with --resume"
             )
         return True
 

@@ -1,4 +1,4 @@
-"""Servos on a bus, which tell where they are: Feetech's and Dynamixel's differ in language and registers alone."""
+"""Servos on a bus, which measure their position: Feetech's and Dynamixel's differ only in language and registers."""
 
 from __future__ import annotations
 
@@ -76,12 +76,12 @@ class ServoBus:
                 f"{port.name}: no answer from {', '.join(map(self._named, silent))}; check power and "
                 "wiring, the ids in the arm file, and --baud"
             )
-        standing = self.calibration.within(self._present(port))
-        port.write(self._goals(standing))  # so that torque moves nothing
+        measured = self.calibration.within(self._present(port))
+        port.write(self._goals(measured))  # so that torque moves nothing
         for register, size in self._registers.ramps:
             port.write(self._language.sync_write(register, dict.fromkeys(self._joints, bytes(size))))
         port.write(self._language.sync_write(self._registers.torque, dict.fromkeys(self._joints, b"\x01")))
-        return standing
+        return measured
 
     def set_point(self, values: FloatArray, duration_s: float) -> bytes:
         return self._goals(values)
@@ -96,12 +96,12 @@ class ServoBus:
         k = int(np.argmax(away))
         servo = self._named(self.calibration.addresses[k])
         raise HardwareError(
-            f"{port.name}: {servo} stands at {present[k]:g} counts, sent to {values[k]:.0f}; "
-            "is it blocked, or the servos' own supply off?"
+            f"{port.name}: {servo} is at {present[k]:g} counts instead of {values[k]:.0f}; "
+            "is it blocked, or is the servos' own supply off?"
         )
 
     def halt(self, port: Port) -> None:
-        """Each at once as it tells where it is; one that does not answer holds the last goal that it was sent."""
+        """Each as soon as it answers with its position; one that does not answer holds its last goal."""
         port.discard_input()
         moving = list(self._joints)
         for patience_s in _HALT_S:
@@ -122,7 +122,7 @@ class ServoBus:
         self._complain(status)
         if status.data == b"\x00":
             raise HardwareError(
-                f"{self._named(status.servo)} has let go: it was reset, or protects itself; check the "
+                f"{self._named(status.servo)} has lost its torque: it was reset or protects itself; check the "
                 "servos' supply and what is in the arm's way"
             )
         return True
@@ -148,7 +148,7 @@ class ServoBus:
         return self._language.read(servo, self._registers.present, self._word_size)
 
     def _present(self, port: Port) -> FloatArray:
-        """(n_joints,) counts where the servos stand."""
+        """(n_joints,) measured counts."""
         counts = []
         for servo in self._joints:
             status = self._ask(port, servo, self._reading(servo))
@@ -182,7 +182,7 @@ class ServoBus:
         if status.faults:
             raise HardwareError(
                 f"{self._named(status.servo)} reports: {', '.join(status.faults)}; switch the servos "
-                "off, see to it, and begin anew"
+                "off, remove the cause, and start again"
             )
 
     def _named(self, servo: int) -> str:

@@ -5,16 +5,14 @@ from __future__ import annotations
 from hardware.clock import Clock
 from hardware.codecs import ssc32
 from hardware.compensation.servo_values import pulse_calibration
-from hardware.drivers.streaming.controller import Question
+from hardware.drivers.streaming.controller import STAGGER_S, Question
 from hardware.port import Port
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError
 
-_STAGGER_S = 0.3
-"""Between servos that leap to their first pulse, so that their currents do not add up."""
 _FIRST_MOVE_S = 2.0
-"""A servo that the board has moved before goes to its first pulse in this time; one it has not leaps there."""
+"""A servo that the board has moved before goes to its first pulse in this time; others jump there."""
 _ANSWER_S = 0.5
 _LONGEST_VERSION = 64
 _POLL_S = 0.05
@@ -44,7 +42,7 @@ class Ssc32:
                 break
         for channel, pulse_us in zip(self.calibration.addresses, values, strict=True):
             port.write(ssc32.move([(channel, pulse_us)], _FIRST_MOVE_S))
-            clock.sleep_until(clock.now_s() + _STAGGER_S)
+            clock.sleep_until(clock.now_s() + STAGGER_S)
         return values
 
     def set_point(self, values: FloatArray, duration_s: float) -> bytes:
@@ -57,7 +55,7 @@ class Ssc32:
             if answer == ssc32.RESTING:
                 return
             clock.sleep_until(clock.now_s() + _POLL_S)
-        raise HardwareError(f"{port.name}: the board does not come to the end of its first move; switch it off and on")
+        raise HardwareError(f"{port.name}: the board does not finish its first move; switch it off and on")
 
     def halt(self, port: Port) -> None:
         port.write(ssc32.stop(self.calibration.addresses))

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 
 from hardware.clock import InstantClock
 from hardware.drivers.driver import Tally
-from hardware.playback.course import next_to_draw
 from hardware.playback.journal import NOTED_EVERY_S, Journal, digest, journal_path
 from hardware.playback.journal_entry import Entry, read_journal
+from hardware.playback.sample_map import next_to_draw
 from planner.errors import OutputError, TrajectoryFileError
 
 BEGINNING = Entry("0f" * 32, "drawing_arm", "native", 3, "")
@@ -87,8 +87,8 @@ def test_where_the_arm_has_come_to_is_noted_now_and_then_and_at_the_end_in_place
     journal = Journal(path, replace(BEGINNING, sample=30), clock)
     assert _read(path).come_to(0) == 30
     journal.counted(Tally(77, 5, 2))
-    journal.onward(1, np.array([30.0, 30.0, 30.2, 31.0, 32.0, 33.0, 34.0]))
-    journal.onward(5, np.array([31.5, 31.8, 31.8]))  # it brakes
+    journal.planned(1, np.array([30.0, 30.0, 30.2, 31.0, 32.0, 33.0, 34.0]))
+    journal.planned(5, np.array([31.5, 31.8, 31.8]))  # it brakes
     journal.reached(0, 2)
     length = 0
     for executed in range(1, 7):
@@ -100,7 +100,7 @@ def test_where_the_arm_has_come_to_is_noted_now_and_then_and_at_the_end_in_place
         assert path.stat().st_size == length
     journal.close("the line is dead")
     entry = _read(path)
-    assert (entry.tally, entry.reached, entry.sent, entry.converged) == (Tally(77, 5, 2), 6, 7, False)
+    assert (entry.tally, entry.reached, entry.sent, entry.all_reached) == (Tally(77, 5, 2), 6, 7, False)
     assert [entry.come_to(reached) for reached in range(9)] == [30, 30, 30, 30.2, 31, 31.5, 31.8, 31.8, 31.8]
     assert entry.at == 31.8
 
@@ -131,9 +131,9 @@ def test_on_a_full_disk_the_journal_never_tells_of_more_than_there_was(
     journal = Journal(path, replace(BEGINNING, sample=30), InstantClock())
     journal._file = _Full(journal._file, room)  # type: ignore[assignment]
     journal.counted(Tally(77, 5, 1))
-    journal.onward(1, 30.0 + np.arange(1000))
-    journal.onward(101, np.full(1000, 130.0))
-    journal.onward(801, np.concatenate((np.full(10, 130.0), 130.0 + np.arange(1000))))
+    journal.planned(1, 30.0 + np.arange(1000))
+    journal.planned(101, np.full(1000, 130.0))
+    journal.planned(801, np.concatenate((np.full(10, 130.0), 130.0 + np.arange(1000))))
     journal.finished(3)
     truth = {50: 79.0, 500: 130.0, 809: 130.0, 911: 230.0}
     journal.reached(911, 920)
@@ -320,9 +320,9 @@ def test_what_is_hostile_is_no_journal(tmp_path: Path, content: bytes) -> None:
 def test_what_is_no_file_or_has_no_end_is_no_journal(tmp_path: Path) -> None:
     pipe, huge, folder = tmp_path / "pipe", tmp_path / "huge", tmp_path / "folder"
     os.mkfifo(pipe)
-    with pytest.raises(TrajectoryFileError, match="is no file"):
+    with pytest.raises(TrajectoryFileError, match="is not a file"):
         read_journal(pipe)
-    with pytest.raises(OutputError, match="is no file"):
+    with pytest.raises(OutputError, match="is not a file"):
         Journal(pipe, BEGINNING, InstantClock())
     huge.touch()
     os.truncate(huge, 1 << 34)

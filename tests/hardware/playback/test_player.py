@@ -10,16 +10,19 @@ from hypothesis import strategies as st
 from hardware.clock import InstantClock
 from hardware.motion.stopping import interpolate, slow_down
 from hardware.motion.tip import link_nodes_mm
-from hardware.playback.course import piece, sample_after
+from hardware.playback.observer import Observer
 from hardware.playback.player import play
 from hardware.playback.program import Program, make_program
-from hardware.playback.progress import End, Played, Progress, Request
+from hardware.playback.request import Request
+from hardware.playback.result import End, PlaybackResult
+from hardware.playback.sample_map import piece, sample_after
 from hardware.simulation.simulated_arm import Recording, SimulatedArm
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError, OutputError
 from planner.trajectory import TRAVELLING, Trajectory
+from tests.hardware.observed import Observed
 
 ARM = load_arm("drawing_arm")
 REST = np.radians([0.0, 60.0, -60.0, -60.0, -30.0])
@@ -108,17 +111,17 @@ def test_a_stall_puts_the_rest_off_instead_of_leaping() -> None:
 
 
 def test_everything_is_sent_reported_and_closed(arm: Arm, program: Program) -> None:
-    clock, reports, finished = InstantClock(), list[Progress](), list[int]()
+    clock, observed = InstantClock(), Observed()
     simulated = SimulatedArm(arm, clock)
-    played = play(program, arm, simulated, clock, report=reports.append, finished=finished.append)
+    played = play(program, arm, simulated, clock, observers=[observed])
     total = len(program.positions)
     np.testing.assert_array_equal(simulated.recording.set_points[:-1], program.positions)
     np.testing.assert_allclose(simulated.recording.positions[1:], program.positions, atol=1e-9)
-    assert [now.reached for now in reports] == list(range(1, total + 1))
-    assert [now.stroke for now in reports] == program.stroke.tolist()
-    assert reports[0].left_s == pytest.approx(program.duration_s)
-    assert reports[-1].left_s == 0
-    assert finished == [0, 1, 2]
+    assert [now.reached for now in observed.progress] == list(range(1, total + 1))
+    assert [now.stroke for now in observed.progress] == program.stroke.tolist()
+    assert observed.progress[0].left_s == pytest.approx(program.duration_s)
+    assert observed.progress[-1].left_s == 0
+    assert observed.strokes_finished == [0, 1, 2]
     assert (played.end, played.sent, played.total, played.parked) == (End.PLAYED, total, total, True)
     assert played.duration_s == pytest.approx(program.duration_s)
     assert not simulated.connected
@@ -130,7 +133,12 @@ def test_a_stroke_is_finished_once_the_controller_says_so(
 ) -> None:
     clock = InstantClock()
     driver, finished = make(arm, clock), list[tuple[int, int]]()
-    play(program, arm, driver, clock, finished=lambda stroke: finished.append((stroke, driver.executed())))
+
+    class Executed(Observer):
+        def finished(self, stroke: int) -> None:
+            finished.append((stroke, driver.executed()))
+
+    play(program, arm, driver, clock, observers=[Executed()])
     ends = [int(np.flatnonzero(program.stroke == stroke)[-1]) for stroke in range(3)]
     assert finished == [(stroke, end + 1) for stroke, end in enumerate(ends)]
 
@@ -143,15 +151,13 @@ def test_a_queue_sets_the_pace(arm: Arm, program: Program) -> None:
     assert played.duration_s == pytest.approx(program.duration_s, abs=0.05)
 
 
-def _asked(arm: Arm, program: Program, wishes: Callable[[int], Request]) -> tuple[Played, Recording, list[int]]:
+def _asked(arm: Arm, program: Program, wishes: Callable[[int], Request]) -> tuple[PlaybackResult, Recording, list[int]]:
     """Play with the request that holds after so many set points."""
-    clock, finished = InstantClock(), list[int]()
+    clock, observed = InstantClock(), Observed()
     simulated = SimulatedArm(arm, clock)
-    played = play(
-        program, arm, simulated, clock, request=lambda: wishes(simulated.executed()), finished=finished.append
-    )
+    played = play(program, arm, simulated, clock, request=lambda: wishes(simulated.executed()), observers=[observed])
     assert not simulated.connected
-    return played, simulated.recording, finished
+    return played, simulated.recording, observed.strokes_finished
 
 
 def _in_order(arm: Arm, recording: Recording, rate_hz: float) -> FloatArray:
@@ -247,11 +253,11 @@ def test_a_stop_before_the_first_set_point_moves_nothing(arm: Arm, program: Prog
 
 
 def test_a_failing_line_is_an_error_and_what_was_drawn_is_known(arm: Arm, program: Program) -> None:
-    clock, finished = InstantClock(), list[int]()
+    clock, observed = InstantClock(), Observed()
     broken = Breaks(arm, clock, int(np.flatnonzero(program.stroke == 1)[5]))
     with pytest.raises(HardwareError, match="dead"):
-        play(program, arm, broken, clock, finished=finished.append)
-    assert finished == [0]
+        play(program, arm, broken, clock, observers=[observed])
+    assert observed.strokes_finished == [0]
     assert not broken.connected
 
 
@@ -259,11 +265,12 @@ def test_whatever_else_fails_the_pen_goes_up_and_the_arm_parks_first(arm: Arm, p
     clock = InstantClock()
     simulated = SimulatedArm(arm, clock)
 
-    def full(stroke: int) -> None:
-        raise OutputError("traj.csv.journal", "No space left on device")
+    class Full(Observer):
+        def finished(self, stroke: int) -> None:
+            raise OutputError("traj.csv.journal", "No space left on device")
 
     with pytest.raises(OutputError, match="No space"):
-        play(program, arm, simulated, clock, finished=full)
+        play(program, arm, simulated, clock, observers=[Full()])
     assert not simulated.connected
     np.testing.assert_allclose(simulated.recording.positions[-1], program.park)
     assert len(simulated.recording.times_s) < len(program.positions)
@@ -284,9 +291,10 @@ def test_where_every_set_point_is_in_the_trajectory_is_said_before_it_is_sent(
         paused[begin : begin + length] = True
     asked = iter(paused)
 
-    def onward(first: int, samples: FloatArray) -> None:
-        assert first == simulated.executed() + 1
-        pieces.append(piece(first, samples))
+    class Pieces(Observer):
+        def planned(self, first: int, samples: FloatArray) -> None:
+            assert first == simulated.executed() + 1
+            pieces.append(piece(first, samples))
 
     play(
         program,
@@ -294,7 +302,7 @@ def test_where_every_set_point_is_in_the_trajectory_is_said_before_it_is_sent(
         simulated,
         clock,
         request=lambda: Request.PAUSE if next(asked, False) else Request.GO,
-        onward=onward,
+        observers=[Pieces()],
     )
     points = simulated.recording.set_points[:-1]
     at = np.array([sample_after(pieces, count) for count in range(1, len(points) + 1)], dtype=float)

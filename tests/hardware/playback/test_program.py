@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from hardware.motion.stopping import interpolate, lift, slow_down
 from hardware.motion.tip import link_nodes_mm
-from hardware.playback.course import next_to_draw
 from hardware.playback.program import make_program, parking
+from hardware.playback.sample_map import next_to_draw
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.errors import UsageError

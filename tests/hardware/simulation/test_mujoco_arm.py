@@ -12,7 +12,7 @@ from hardware.clock import InstantClock
 from hardware.motion.tip import link_nodes_mm
 from hardware.playback.player import play
 from hardware.playback.program import make_program
-from hardware.playback.progress import End
+from hardware.playback.result import End
 from hardware.simulation.mujoco_arm import MujocoArm
 from planner.arms.arm import Arm
 from planner.arms.arm_file import known_arms, load_arm

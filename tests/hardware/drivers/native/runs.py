@@ -8,7 +8,8 @@ import numpy as np
 
 from hardware.clock import Clock
 from hardware.codecs import native
-from hardware.drivers.native.driver import NativeDriver, Transport
+from hardware.drivers.native.driver import NativeDriver
+from hardware.drivers.native.session import Transport
 from planner.arrays import FloatArray
 from tests.hardware.emulator.emulator import Emulator, LockStep
 

@@ -15,7 +15,8 @@ from hardware.motion.tip import link_nodes_mm
 from hardware.playback.player import play
 from hardware.playback.preflight import set_points
 from hardware.playback.program import make_program
-from hardware.playback.progress import End, Request
+from hardware.playback.request import Request
+from hardware.playback.result import End
 from hardware.simulation.ink import drawn_lines
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
@@ -24,6 +25,7 @@ from planner.pipeline import plan
 from planner.settings import PlanSettings
 from planner.trajectory import Trajectory
 from tests.hardware.emulator.emulator import Emulator, Faults, LockStep
+from tests.hardware.observed import Observed
 
 ARM = load_arm("drawing_arm")
 _EVERY_S = 0.005
@@ -76,12 +78,10 @@ def test_what_the_pins_draw_is_the_drawing_paused_or_not(
     program = make_program(ARM, set_points(trajectory, ARM, drawing), trajectory.stroke, trajectory.rate_hz)
     requests = iter([*[Request.GO] * 160, *[Request.PAUSE] * rests])
 
-    finished: list[int] = []
-    played = play(
-        program, ARM, driver, controller, request=lambda: next(requests, Request.GO), finished=finished.append
-    )
+    observed = Observed()
+    played = play(program, ARM, driver, controller, request=lambda: next(requests, Request.GO), observers=[observed])
     assert played.end is End.PLAYED
-    assert finished == [0, 1, 2]
+    assert observed.strokes_finished == [0, 1, 2]
     controller.sleep_until(controller.now_s() + 0.1)
     found = _drawing_error(controller.emulator, trajectory)
     assert found.most_mm < 0.1

@@ -116,7 +116,7 @@ def test_a_board_that_never_answers_is_told_how_to_be_set() -> None:
 def test_a_channel_that_the_board_keeps_back_is_told() -> None:
     far = Bench(MaestroModel(most=4 * 1400))
     driver = _driver(far)
-    with pytest.raises(HardwareError, match="channel 0 of the Maestro stays at 1400 us where 1500 us are wanted"):
+    with pytest.raises(HardwareError, match="channel 0 of the Maestro stays at 1400 us instead of 1500 us"):
         driver.connect(POSE)
     driver.close()
 
@@ -155,6 +155,8 @@ def test_a_line_too_slow_for_the_set_points_is_told_at_the_first() -> None:
     far = Bench(MaestroModel(), baud=9600)
     driver = make_driver("maestro", ARM, far, far)
     driver.connect(POSE)
-    with pytest.raises(HardwareError, match=r"a set point is 20.8 ms on the line and 20 ms are between two"):
+    with pytest.raises(
+        HardwareError, match=r"a set point takes 20.8 ms on the line, but the next one follows after 20 ms"
+    ):
         driver.send(POSE, 0.02)
     driver.close()

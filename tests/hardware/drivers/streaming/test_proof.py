@@ -25,6 +25,7 @@ from planner.trajectory import TRAVELLING
 from tests.hardware.controllers.bench import Bench
 from tests.hardware.controllers.lines import Model
 from tests.hardware.drivers.streaming.test_set_points import MAKERS, heard
+from tests.hardware.observed import Observed
 
 N = 300
 RATE_HZ = 100.0
@@ -54,29 +55,20 @@ def _driver(name: str, bench: Bench) -> Driver:
     return make_driver(name, _arm(name), bench, bench)  # type: ignore[arg-type]
 
 
-class Run:
-    """What a run on `bench` has noted: strokes sent and finished, and why it ended."""
+class Run(Observed):
+    """A run on `bench`, and why it ended."""
 
     def __init__(self, name: str, bench: Bench) -> None:
-        arm, driver = _arm(name), _driver(name, bench)
-        self.sent, self.finished, self.failure = list[int](), list[int](), ""
-        self.begins = 0
-
-        def connected() -> None:
-            self.begins = heard(bench.model)
-
+        super().__init__()
+        arm, self._bench = _arm(name), bench
+        self.begins, self.failure = 0, ""
         try:
-            play(
-                _program(arm),
-                arm,
-                driver,
-                bench,
-                connected=connected,
-                sent=self.sent.append,
-                finished=self.finished.append,
-            )
+            play(_program(arm), arm, _driver(name, bench), bench, observers=[self])
         except HardwareError as error:
             self.failure = str(error)
+
+    def connected(self) -> None:
+        self.begins = heard(self._bench.model)
 
     def executed(self, bench: Bench) -> list[int]:
         """The strokes of which every set point was heard, by a model that was not reset."""
@@ -92,7 +84,7 @@ def _whole(name: str, latency_s: float) -> tuple[int, int]:
     attached, bench = bench.taken, Bench(MAKERS[name](), latency_s=latency_s)
     run = Run(name, bench)
     assert run.failure == ""
-    assert run.finished == list(range(N_STROKES))
+    assert run.strokes_finished == list(range(N_STROKES))
     return attached, bench.taken
 
 
@@ -106,9 +98,9 @@ def test_a_controller_that_dies_at_a_line_that_lives_has_drawn_all_that_counts(
     bench = Bench(MAKERS[name](), dies_after=attached + share * (whole - attached - 1), latency_s=latency_s)
     run = Run(name, bench)
     assert "no longer answers" in run.failure
-    assert run.finished == list(range(len(run.finished)))
-    assert set(run.finished) <= set(run.executed(bench))
-    assert set(run.executed(bench)) <= set(run.sent)
+    assert run.strokes_finished == list(range(len(run.strokes_finished)))
+    assert set(run.strokes_finished) <= set(run.executed(bench))
+    assert set(run.executed(bench)) <= set(run.strokes_sent)
 
 
 @pytest.mark.parametrize("name", MAKERS)
@@ -139,7 +131,7 @@ def test_a_reset_at_a_line_that_lives_is_noticed(name: str, share: float, latenc
     )
     run = Run(name, bench)
     assert run.failure
-    assert set(run.finished) <= set(run.executed(bench))
+    assert set(run.strokes_finished) <= set(run.executed(bench))
 
 
 def _anew(name: str) -> Callable[[], Model]:
@@ -175,4 +167,4 @@ def test_an_answer_to_a_question_that_was_given_up_proves_nothing(name: str) -> 
     """It comes from the same servo after it was asked again, and was on its way before the servo died."""
     bench = Bench(MAKERS[name](), latency_s=0.9)
     run = Run(name, bench)
-    assert set(run.finished) <= set(run.executed(bench))
+    assert set(run.strokes_finished) <= set(run.executed(bench))

@@ -95,7 +95,7 @@ def test_a_servo_that_cannot_follow_is_told(name: str, kind: type[BusModel]) -> 
     model.stuck = {2}
     far = Bench(model)
     driver = _driver(name, far)
-    with pytest.raises(HardwareError, match=r"servo 2 \(shoulder_lift\) stands at 920 counts, sent to 1820"):
+    with pytest.raises(HardwareError, match=r"servo 2 \(shoulder_lift\) is at 920 counts instead of 1820"):
         driver.connect(POSE)
     driver.close()
 
@@ -111,7 +111,7 @@ def test_faults_and_silence_are_noticed_in_passing(name: str, kind: type[BusMode
         _stream(driver)
     model.faults = {}
     model.memory[3][model.TORQUE] = 0
-    with pytest.raises(HardwareError, match=r"servo 3 \(elbow_flex\) has let go"):
+    with pytest.raises(HardwareError, match=r"servo 3 \(elbow_flex\) has lost its torque"):
         _stream(driver)
     model.memory[3][model.TORQUE] = 1
     model.dead = set(REST)
@@ -151,7 +151,7 @@ def test_an_arm_left_far_outside_its_range_is_not_powered(name: str, kind: type[
         far = Bench(model)
         driver = _driver(name, far)
         if refused:
-            with pytest.raises(HardwareError, match="joint shoulder_lift stands at 790 counts, outside its range"):
+            with pytest.raises(HardwareError, match="joint shoulder_lift is at 790 counts, outside its range"):
                 driver.connect(POSE)
         else:
             driver.connect(POSE)

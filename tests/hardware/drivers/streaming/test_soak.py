@@ -27,4 +27,4 @@ def test_whatever_dies_or_is_reset_the_drawing_gets_done(
         assert outcome.off_mm <= soak.bound_mm
         interruptions += outcome.dead + outcome.reset
     assert interruptions > 2
-    assert "controller was not heard to have drawn" in capsys.readouterr().err
+    assert "not confirmed by the controller" in capsys.readouterr().err

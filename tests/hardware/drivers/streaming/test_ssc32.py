@@ -61,7 +61,7 @@ def test_a_board_that_does_not_answer_or_does_not_arrive_is_told() -> None:
     model = Ssc32Model(still_moving=1000)
     far = Bench(model)
     driver = make_driver("ssc32", ARM, far, far)
-    with pytest.raises(HardwareError, match="does not come to the end of its first move"):
+    with pytest.raises(HardwareError, match="does not finish its first move"):
         driver.connect(POSE)
     model.deaf = True
     driver.close()

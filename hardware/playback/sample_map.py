@@ -1,7 +1,7 @@
-"""Which sample of a trajectory the arm is at after so many set points of a run, in pauses and ramps as well.
+"""The map from set points of a run to samples of its trajectory, in pauses and ramps as well.
 
-A course is a list of pieces, each a polyline through knots (set points sent, sample). A piece holds from its first knot
-on, whatever an earlier one has said of what was to come.
+The map is a list of pieces, each a polyline through knots (set points sent, sample). A piece holds from its first knot
+on and replaces what earlier pieces say from there.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def piece(first: int, samples: FloatArray) -> list[tuple[int, float]]:
 
 
 def sample_after(pieces: Sequence[Piece], reached: int) -> float | None:
-    """The sample after `reached` set points, None where no piece tells."""
+    """The sample after `reached` set points, None where no piece covers it."""
     for one in reversed(pieces):
         if one[0][0] <= max(reached, 1):  # before its first set point the arm is where that one is
             counts, samples = zip(*one, strict=True)

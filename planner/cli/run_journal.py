@@ -1,4 +1,4 @@
-"""`plan run`: what a run keeps for a later --resume."""
+"""`plan run`: the journal that a run keeps for a later --resume."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ from hardware.drivers.driver import Driver, Remembering
 from hardware.drivers.table import SIMULATORS
 from hardware.playback.journal import Journal
 from hardware.playback.journal_entry import Entry
+from hardware.playback.observer import Observer
 from planner.arrays import FloatArray
-from planner.cli.one_run import is_kept, journal_of
-from planner.cli.resuming import FURTHER, in_doubt_words
+from planner.cli.run_files import is_kept, journal_of
+from planner.cli.run_resume import FURTHER, in_doubt_words
 from planner.cli.terminal import print_note, print_warnings
 from planner.errors import OutputError
 
 
-class Keeping:
-    """A journal, begun once the arm is there to draw, for a wrong port must not cost an earlier run's. Where none can
-    be written there is a warning and none; a run that resumes is refused then, for what it draws would be drawn again.
+class RunJournal(Observer):
+    """Begins the journal once the arm is ready, so that a wrong port does not cost the journal of an earlier run. Where
+    no journal can be written there is only a warning; a run that resumes is refused, or it would be drawn twice.
 
-    Of a controller that remembers how far it came the journal says how it counts; of others, which strokes were sent
-    before they are known to be drawn.
+    For a controller that remembers how far it came, the journal says how it counts; for others, which strokes were
+    sent before they are known to be drawn.
     """
 
     def __init__(
@@ -40,7 +41,7 @@ class Keeping:
         self._journal: Journal | None = None
 
     def opened(self) -> None:
-        """The line is open. What an earlier run's controller has told is kept before connecting makes it forget."""
+        """The line is open. Note what the controller remembers of an earlier run: connecting makes it forget."""
         if self._options.resume and self._remembering:
             self._begin()
 
@@ -50,10 +51,10 @@ class Keeping:
         if self._journal and self._remembering:
             self._journal.counted(self._remembering.tally(1 / self._rate_hz))
 
-    def onward(self, first: int, samples: FloatArray) -> None:
+    def planned(self, first: int, samples: FloatArray) -> None:
         if self._journal and self._remembering:
-            self._journal.onward(first, samples)
-            if first == 1:  # before anything is drawn that could not be told from what is not
+            self._journal.planned(first, samples)
+            if first == 1:  # on disk before anything is drawn
                 self._journal.wait()
 
     def reached(self, executed: int, sent: int) -> None:
@@ -86,7 +87,7 @@ class Keeping:
         options = self._options
         if not is_kept(options.trajectory):
             print_warnings(
-                [f"there will be nothing for --resume to go by: {options.trajectory} is no file to find again"]
+                [f"--resume will not be able to go on: {options.trajectory} is not a file that can be found again"]
             )
             return
         path = journal_of(options)
@@ -97,8 +98,8 @@ class Keeping:
                 raise
             with suppress(OSError):
                 if path.is_file():
-                    path.unlink()  # it does not tell of this run
-            print_warnings([f"there will be nothing for --resume to go by: {error}"])
+                    path.unlink()  # it is of another run
+            print_warnings([f"--resume will not be able to go on: {error}"])
 
     def _rest(self, journal: Journal) -> str:
         if journal.next_stroke > self._last_stroke:

@@ -1,20 +1,11 @@
-"""What a player is asked, what it tells as it plays, and what it says at the end."""
+"""How playing a program ended, and what there is to say of it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum, auto
+from enum import Enum
 
 from planner.counted import counted
-
-
-class Request(Enum):
-    """What the people at the arm want of it now."""
-
-    GO = auto()
-    PAUSE = auto()
-    STOP = auto()
-    EMERGENCY_STOP = auto()
 
 
 class End(Enum):
@@ -26,28 +17,14 @@ class End(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
-    """How far playing has come: `reached` of `total` set points of the program, as far as the controller tells.
+class PlaybackResult:
+    """How playing a program went.
 
-    stroke: being drawn there, or TRAVELLING. left_s: until the end, if nothing comes between.
-    """
-
-    reached: int
-    total: int
-    stroke: int
-    left_s: float
-    paused: bool
-
-
-@dataclass(frozen=True, slots=True)
-class Played:
-    """What became of a program.
-
-    sent: its set points sent, of `total`. duration_s: from the first set point to the last, stops and pauses included.
-    late_s: how long after its time a set point was handed over, at the median, for 99 of 100, and at worst; zeros where
-    a controller's queue sets the pace. stalls: times that playing stood still for so long that everything after was
-    put off. pen_height_mm: where the tip was left above the paper; parked: whether that is the park pose.
-    link: what the driver tells of its line.
+    sent: set points of the program sent, of `total`. duration_s: from the first set point to the last, stops and pauses
+    included. late_s: how long after its time a set point was handed over, at the median, for 99 of 100, and at worst;
+    zeros where a controller's queue sets the pace. stalls: stalls of the host, after each of which the rest was played
+    later. pen_height_mm: where the tip was left above the paper; parked: whether that is the park pose. link: what the
+    driver says of its line.
     """
 
     end: End
