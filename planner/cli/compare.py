@@ -111,7 +111,7 @@ def _start(arm: Arm, positions: Sequence[float]) -> FloatArray:
 def _print(comparison: Comparison, target: Path | None, picture: Path | None) -> None:
     from planner.comparison.description import comparison_description
     from planner.comparison.table import convergence_lines, table_lines
-    from planner.trajectory import written_aside
+    from planner.files import written_aside
 
     if target is not None:
         text = json.dumps(comparison_description(comparison), indent=2, allow_nan=False)

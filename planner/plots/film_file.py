@@ -17,12 +17,11 @@ from PIL import Image
 
 from planner.arrays import FloatArray
 from planner.errors import OutputError, UsageError
-from planner.files import is_standard_output
+from planner.files import is_standard_output, written_aside
 from planner.plots.film import Film, Frame
 from planner.plots.look import USUAL, Colours, Look
 from planner.plots.motion import Motion
 from planner.plots.player import player_page
-from planner.trajectory import written_aside
 
 Show = Callable[[str, int, int], None]
 """show(label, done, total)."""

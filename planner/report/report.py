@@ -17,6 +17,7 @@ from planner.checking.check_result import CheckResult
 from planner.drawing.drawing import Drawing
 from planner.errors import OutputError
 from planner.execution.work_chunks import pen_speed_mm_s
+from planner.files import written_aside
 from planner.plots.look import Theme
 from planner.report.markup import Markup, clean, definitions, element, joined, section, table
 from planner.report.pictures import pictures
@@ -24,7 +25,7 @@ from planner.report.shares import QUANTITIES, LargestShare, largest_shares
 from planner.settings import PlanSettings
 from planner.stroke_figures import StrokeFigures, stroke_figures
 from planner.summary import PlanSummary, clock
-from planner.trajectory import TRAVELLING, Trajectory, written_aside
+from planner.trajectory import TRAVELLING, Trajectory
 
 _N_STROKES = 20
 _MADE_WITH = ("drawing-arm-planner", "numpy", "scipy", "casadi", "ruckig", "matplotlib")
