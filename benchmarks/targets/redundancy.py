@@ -14,10 +14,10 @@ from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.errors import PlanError
 from planner.kinematics.projection import Pins, project
+from planner.redundancy.arm_model import ArmModel
 from planner.redundancy.configuration_map import (
     ConfigurationMap,
     choice_of_configurations,
-    configuration_map_of,
     sharp_configuration_path,
 )
 from planner.redundancy.configuration_path import (
@@ -49,9 +49,10 @@ def against_brute_force(drawing: Path, settings: PlanSettings) -> list[Row]:
     """The field's course against a dense search over all configurations of the ray; and, the price of the same
     configuration at the same place, the map along short strokes against a dense search for each of them."""
     arm = load_arm(settings.arm)
-    cost, radii, samples = choice_of_configurations(arm, settings.weights)
+    model = ArmModel(arm)
+    cost, radii, samples = choice_of_configurations(model.kinematics, settings.weights)
     nodes, sharp = sharp_configuration_path(cost, radii, samples)
-    configuration_map = configuration_map_of(arm, settings.weights)
+    configuration_map = model.configuration_map(settings.weights)
     pool = np.concatenate(samples)
     dense = best_of_dense(cost, nodes, on_ray(nodes), pool)
     ours, rounded, brute = (

@@ -6,7 +6,7 @@ its coupling. Compiled functions are evaluated over whole arrays of configuratio
 
 from __future__ import annotations
 
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import casadi
 import numpy as np
@@ -14,12 +14,13 @@ import numpy as np
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arrays import FloatArray
 from planner.kinematics.compiled import CompiledFunction
+from planner.kinematics.link_clearance import LinkClearance
 
 _PROBES = 32
 
 
 class Kinematics:
-    """Forward kinematics, Jacobians and the task of one arm, as functions of its independent joints.
+    """Forward kinematics, Jacobians, the task and the clearances of one arm, as functions of its independent joints.
 
     The task is what a configuration has to meet at a pen target: the tip's place (3 rows, mm) and, where the
     tool axis has to point down, its horizontal components (which have to be zero), seen from the turning base.
@@ -37,6 +38,10 @@ class Kinematics:
         self.axis = last[:3, :3] @ casadi.DM(arm.pen.tool_axis)
         self.task = casadi.vertcat(self.tip, *self._pointing()) if arm.pen.hold is PenHold.TOOL_AXIS else self.tip
         self.nodes = casadi.horzcat(*corners).T
+
+    @cached_property
+    def clearance(self) -> LinkClearance:
+        return LinkClearance(self.arm, self.nodes_mm)
 
     def _pointing(self) -> list[casadi.SX]:
         """The horizontal components of the tool axis that are not zero by construction."""
@@ -135,8 +140,7 @@ class Kinematics:
 
     def independent_of(self, joints: FloatArray) -> FloatArray:
         """The independent joints (..., n_independent) among all (..., n_joints)."""
-        chosen: FloatArray = np.ascontiguousarray(joints[..., list(self.arm.independent_joints)])
-        return chosen
+        return self.arm.independent_of(joints)
 
 
 def _chain(arm: Arm, joints: casadi.SX) -> tuple[list[casadi.SX], list[casadi.SX]]:
@@ -169,9 +173,3 @@ def _dh(theta: casadi.SX | float, d: casadi.SX | float, a_mm: float, alpha_rad: 
 def _exact(value: float) -> float:
     rounded = round(value)
     return float(rounded) if abs(value - rounded) < 1e-15 else float(value)
-
-
-@lru_cache(maxsize=16)
-def kinematics_of(arm: Arm) -> Kinematics:
-    """The kinematics of an arm, built once."""
-    return Kinematics(arm)

@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.placement.pen_path import PenPaths
 from planner.ragged import starts_of
+from planner.settings import PlanSettings
 
 _STEP = 0.85
 """Ratio of the speeds that are tried, one after the other."""
 _GAP_MM = 1e4
 _PARTS = 2
 """Parts of a cell at whose ends chords are tried: a hairpin may turn in the middle of one."""
+
+
+def pen_speed_mm_s(arm: Arm, settings: PlanSettings) -> float:
+    """The cap on the pen's speed on the paper: what is asked for, or the arm's own."""
+    return settings.speed_mm_s or arm.pen.speed_mm_s
 
 
 def rate_limit(

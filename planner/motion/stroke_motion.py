@@ -8,10 +8,10 @@ import numpy as np
 
 from planner.arrays import FloatArray, IntArray
 from planner.inverse_kinematics.joint_path import DEGREE, JointPaths
+from planner.kinematics.limits import Limits
 from planner.ragged import starts_of, within
 from planner.spline import evaluate, first_controls
 from planner.timing.length_bound import SLOW_ARM, require_bounded
-from planner.timing.limits import Limits
 
 _CHECKS_PER_CELL = 20
 _CELLS_AT_ONCE = 2048

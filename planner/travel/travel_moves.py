@@ -16,12 +16,13 @@ import numpy as np
 
 from planner.arrays import BoolArray, FloatArray
 from planner.kinematics.chain import Kinematics
+from planner.kinematics.limits import Limits, within_limits
 from planner.kinematics.link_clearance import Collision
 from planner.kinematics.projection import project
 from planner.kinematics.quickest_lift import quickest_lifts
 from planner.motion.between_samples import travel_move_excess
+from planner.motion.timed_stroke import Contact
 from planner.timing.length_bound import MOST_SAMPLES_OF_A_HOP, require_bounded
-from planner.timing.limits import Limits
 from planner.travel.ruckig_profile import NoSuchMove, RestToRest, between_states, rest_to_rest
 from planner.travel.travel_choice import (
     RESTING_SHARE,
@@ -86,15 +87,6 @@ class TravelMove:
     held: bool = True
     collision: Collision | None = None
     too_long_s: float = 0.0
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Contact:
-    """Where a travel move leaves or meets the paper: the tip (2,) in mm and the independent joints (n_independent,)
-    there."""
-
-    tip_mm: FloatArray
-    configuration: FloatArray
 
 
 def plan_travel_moves(
@@ -468,7 +460,6 @@ def _sampled_together(
         counts.append(count + 1)
     independent, exact = project(kinematics, np.concatenate(references), np.concatenate(tips))
     joints = kinematics.arm.complete(independent)
-    arm = kinematics.arm
-    exact &= ((joints >= arm.minimum - 1e-9) & (joints <= arm.maximum + 1e-9)).all(axis=1)
+    exact &= within_limits(kinematics.arm, joints)
     bounds = np.cumsum(counts)[:-1]
     return np.split(joints, bounds), np.split(exact, bounds)

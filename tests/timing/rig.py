@@ -9,9 +9,9 @@ from scipy.interpolate import BSpline, PPoly
 
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import DEGREE, JointPaths, interpolate
+from planner.kinematics.limits import Limits
 from planner.motion.stroke_motion import StrokeMotions, motions
 from planner.placement.pen_path import smooth_paths
-from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 

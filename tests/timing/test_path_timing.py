@@ -13,8 +13,8 @@ from scipy.interpolate import BSpline
 
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import JointPaths
+from planner.kinematics.limits import Limits
 from planner.motion.stroke_motion import motions
-from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
 from planner.travel.ruckig_profile import rest_to_rest
 from tests.timing.rig import (

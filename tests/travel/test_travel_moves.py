@@ -12,13 +12,12 @@ from hypothesis import strategies as st
 
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
-from planner.kinematics.chain import kinematics_of
+from planner.kinematics.limits import Limits
 from planner.kinematics.quickest_lift import quickest_lifts
-from planner.redundancy.configuration_map import configuration_map_of
-from planner.timing.limits import Limits
+from planner.motion.timed_stroke import Contact
 from planner.travel.ruckig_profile import between_states, rest_to_rest
-from planner.travel.travel_moves import Contact, TravelMove, TravelRules, plan_travel_moves
-from tests.arms.chains import DRAWING_ARMS, load_once, tips_by_product
+from planner.travel.travel_moves import TravelMove, TravelRules, plan_travel_moves
+from tests.arms.chains import DRAWING_ARMS, kinematics_of, load_once, model_of, tips_by_product
 from tests.timing.rig import share_of_limits
 
 CLEARANCE_MM, LIFT_MM = 1.0, 5.0
@@ -33,7 +32,9 @@ PLACES = {
 
 
 def contacts(arm: Arm, tips_mm: FloatArray) -> list[Contact]:
-    independent, good = configuration_map_of(arm).configurations_at(np.column_stack((tips_mm, np.zeros(len(tips_mm)))))
+    independent, good = (
+        model_of(arm).configuration_map().configurations_at(np.column_stack((tips_mm, np.zeros(len(tips_mm)))))
+    )
     assert good.all()
     return [Contact(tip, configuration) for tip, configuration in zip(tips_mm, independent, strict=True)]
 
