@@ -18,7 +18,8 @@ from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import extent, flatten_all
 from planner.drawing.join import join_strokes
-from planner.drawing.order import Metric, order_strokes
+from planner.drawing.metric import Metric
+from planner.drawing.order import order_strokes
 from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
 from planner.execution.context import PlanContext
@@ -41,6 +42,7 @@ from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
 from planner.placement.pieces import Piece
 from planner.placement.split import split_strokes
+from planner.progress import Report
 from planner.redundancy.arm_model import ArmModel
 from planner.redundancy.configuration_map import ConfigurationMap
 from planner.settings import Method, PlanSettings
@@ -51,9 +53,6 @@ from planner.trajectory import TRAVELLING, Trajectory
 from planner.travel.travel_moves import TravelMove, TravelRules
 from planner.travel.travel_time_metric import travel_time_metric
 from planner.workspace.canvas import Canvas, canvas_of
-
-Report = Callable[[str, int, int], None]
-"""Told the stage, how much of it is done, and how much there is."""
 
 _SMALL_BYTES = 60_000
 """Drawings in shorter files, of a few thousand points, are done sooner than worker processes have started."""

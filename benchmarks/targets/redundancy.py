@@ -22,7 +22,6 @@ from planner.redundancy.configuration_map import (
 )
 from planner.redundancy.configuration_path import (
     cheapest_configuration_path,
-    configuration_path_cost,
     polished_configuration_path,
 )
 from planner.redundancy.configuration_tests import usable_configurations
@@ -107,6 +106,19 @@ def stations(stroke: FloatArray) -> tuple[FloatArray, FloatArray]:
     along = np.linspace(0.0, way[-1], int(np.ceil(way[-1] / _STATION_MM)) + 1)
     x, y = (np.interp(along, way, column) for column in stroke.T)
     return along, np.column_stack((x, y, np.zeros(len(along))))
+
+
+def configuration_path_cost(cost: ConfigurationCost, along_mm: FloatArray, configuration_path: FloatArray) -> float:
+    """What a course costs: the mean of its densities over the way."""
+    lengths = np.diff(along_mm)
+    own, steps = (
+        cost.configurations(configuration_path),
+        np.diff(cost.kinematics.arm.complete(configuration_path), axis=0),
+    )
+    total = 0.5 * (own[1:] + own[:-1]) @ lengths + sum(
+        float(cost.steps(step, length)) * length for step, length in zip(steps, lengths.tolist(), strict=True)
+    )
+    return float(total / lengths.sum())
 
 
 def best_of_dense(cost: ConfigurationCost, along_mm: FloatArray, tips_mm: FloatArray, pool: FloatArray) -> FloatArray:

@@ -19,7 +19,7 @@ from planner.drawing.order import order_strokes
 from planner.drawing.svg import read_drawing
 from planner.execution import work_chunks
 from planner.execution.context import PlanContext
-from planner.inverse_kinematics.joint_path import DEGREE, JointPaths
+from planner.inverse_kinematics.joint_path import JointPaths
 from planner.inverse_kinematics.references import references_of
 from planner.inverse_kinematics.stroke_configurations import InfeasiblePath, joint_paths
 from planner.kinematics.chain import Kinematics
@@ -31,6 +31,7 @@ from planner.placement.pen_path import PenPaths, smooth_paths
 from planner.ragged import starts_of
 from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
+from planner.spline_paths import DEGREE
 from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 from planner.workspace.canvas import canvas_of

@@ -21,9 +21,10 @@ from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.cli.controls import KEYS, controls
 from planner.cli.keeping import Keeping
-from planner.cli.terminal import Show, print_note, print_warnings, progress
+from planner.cli.terminal import print_note, print_warnings, progress
 from planner.error_model.random_arm import random_arm
 from planner.errors import HardwareError, UsageError
+from planner.progress import Report
 
 if TYPE_CHECKING:
     from hardware.simulation.mujoco_arm import MujocoArm
@@ -138,7 +139,7 @@ def _announced(options: argparse.Namespace, program: Program, arm: Arm) -> str:
     )
 
 
-def _reporting(show: Show, driver: Driver, rate_hz: float, last_stroke: int) -> Callable[[Progress], None]:
+def _reporting(show: Report, driver: Driver, rate_hz: float, last_stroke: int) -> Callable[[Progress], None]:
     """Shows progress a few times a second."""
     between = max(round(rate_hz / _REPORTS_A_SECOND), 1)
     calls = 0

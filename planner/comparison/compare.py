@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,10 +19,9 @@ from planner.comparison.worked_example import documented_start
 from planner.errors import PlanError, PlannerError, TargetBeyondReach
 from planner.inverse_kinematics.dls import FOR_DRAWING
 from planner.inverse_kinematics.references import home_of
+from planner.progress import Report
 from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
-
-Report = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, slots=True)

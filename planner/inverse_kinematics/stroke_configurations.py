@@ -56,7 +56,7 @@ def joint_paths(
 ) -> tuple[JointPaths, list[InfeasiblePath]]:
     """Joint splines along pen paths on the paper, and the paths that cannot be followed, each with where."""
     starts = starts_of(paths.n_cells)
-    corners = paths.points(np.array([0.0, 1.0]))
+    corners = paths.positions(np.array([0.0, 1.0]))
     knots = np.insert(corners[:, 0], starts[1:], corners[starts[1:] - 1, 1], axis=0)
     tips = np.column_stack((knots, np.zeros(len(knots))))
     per_path = starts + np.arange(len(starts))  # each path has a knot more than cells
@@ -71,7 +71,7 @@ def joint_paths(
 def strays_mm(kinematics: Kinematics, paths: PenPaths, splines: JointPaths) -> FloatArray:
     """(total cells,) how far the tip is off its path in the middle between two knots."""
     middles = kinematics.tip_mm(kinematics.independent_of(splines.positions(_MIDDLE)[:, 0]))
-    middles[:, :2] -= paths.points(_MIDDLE)[:, 0]
+    middles[:, :2] -= paths.positions(_MIDDLE)[:, 0]
     strays: FloatArray = np.abs(middles).max(axis=1)
     return strays
 

@@ -14,6 +14,7 @@ import numpy as np
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arrays import FloatArray
 from planner.kinematics.compiled import CompiledFunction
+from planner.kinematics.dh_row import dh_entries
 from planner.kinematics.link_clearance import LinkClearance
 
 _PROBES = 32
@@ -159,17 +160,6 @@ def _chain(arm: Arm, joints: casadi.SX) -> tuple[list[casadi.SX], list[casadi.SX
 
 
 def _dh(theta: casadi.SX | float, d: casadi.SX | float, a_mm: float, alpha_rad: float) -> casadi.SX:
-    """Rz(theta) Tz(d) Tx(a) Rx(alpha), with exact zeros and ones where alpha is a right angle."""
-    c, s = casadi.cos(theta), casadi.sin(theta)
-    ca, sa = _exact(np.cos(alpha_rad)), _exact(np.sin(alpha_rad))
-    return casadi.vertcat(
-        casadi.horzcat(c, -s * ca, s * sa, a_mm * c),
-        casadi.horzcat(s, c * ca, -c * sa, a_mm * s),
-        casadi.horzcat(0, sa, ca, d),
-        casadi.horzcat(0, 0, 0, 1),
-    )
-
-
-def _exact(value: float) -> float:
-    rounded = round(value)
-    return float(rounded) if abs(value - rounded) < 1e-15 else float(value)
+    rows = dh_entries(casadi.cos(theta), casadi.sin(theta), d, a_mm, alpha_rad)
+    transform: casadi.SX = casadi.vertcat(*(casadi.horzcat(*row) for row in rows))
+    return transform

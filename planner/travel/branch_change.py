@@ -41,12 +41,8 @@ def plan_branch_change(
     )
     joints = kinematics.arm.complete(corners)
     legs = [_leg(limits, rules, joints[k], joints[k + 1])[1:] for k in range(len(joints) - 1)]
-    over_s = sum(map(len, legs)) / rules.rate_hz
     return TravelMove(
         np.concatenate((up.joints, *legs, down.joints[1:])),
-        up.lifting_s,
-        up.travelling_s + up.lowering_s + over_s + down.lifting_s + down.travelling_s,
-        down.lowering_s,
         up.exact and down.exact and len(legs) > 0,
         too_long_s=max(up.too_long_s, down.too_long_s),
     )

@@ -71,7 +71,7 @@ class TravelRules:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TravelMove:
-    """Joint samples (n_samples, n_joints) of a travel move, both ends included, and the durations of its phases in s.
+    """Joint samples (n_samples, n_joints) of a travel move, both ends included.
 
     exact: False where the pen could not be kept on its way, or a joint left its range, or jumps however slow the move.
     held: whether the tip is within the tolerance between samples. collision: where links would come too close.
@@ -80,9 +80,6 @@ class TravelMove:
     """
 
     joints: FloatArray
-    lifting_s: float
-    travelling_s: float
-    lowering_s: float
     exact: bool
     held: bool = True
     collision: Collision | None = None
@@ -153,7 +150,7 @@ def _held(kinematics: Kinematics, limits: Limits, plans: Sequence[_Timed], rules
         helped = excess < _HELPED * before
         steady = [limits.slowing_of(samples, 1 / rules.rate_hz) < _JUMP for samples in joints]
         moves.update(
-            (index, plan.move(samples, bool(good.all()) and moves, over <= 1.0))
+            (index, TravelMove(samples, bool(good.all()) and moves, over <= 1.0, too_long_s=plan.too_long_s))
             for index, plan, samples, good, moves, over, kept in zip(
                 left.tolist(), plans, joints, exact, steady, excess.tolist(), helped.tolist(), strict=True
             )
@@ -287,19 +284,6 @@ class _Timed:
             clear = (times > self.over_begins_s) & (times < self.clear_until_s)
             height[clear] = self.above.at(times[clear] - self.over_begins_s)
         return self.over.at(times - self.over_begins_s), height
-
-    def move(self, joints: FloatArray, exact: bool, held: bool) -> TravelMove:
-        lifting = self.over_begins_s * self.factor
-        lowering = (self.natural_s - self.clear_until_s) * self.factor
-        return TravelMove(
-            joints,
-            lifting,
-            max(self.duration_s - lifting - lowering, 0.0),
-            lowering,
-            exact,
-            held,
-            too_long_s=self.too_long_s,
-        )
 
 
 def _joint_slopes(kinematics: Kinematics, shapes: Sequence[_Shape]) -> Slopes:

@@ -38,7 +38,7 @@ def test_joint_paths_follow_the_pen_path_within_limits(arm: Arm, method: Method)
     assert infeasible_paths == []
     joints = splines.positions(FRACTIONS).reshape(-1, arm.n_joints)
     assert ((joints >= arm.minimum - 1e-6) & (joints <= arm.maximum + 1e-6)).all()
-    wanted = paths.points(FRACTIONS).reshape(-1, 2)
+    wanted = paths.positions(FRACTIONS).reshape(-1, 2)
     tips = tips_by_product(arm, joints)
     assert np.hypot(*(tips[:, :2] - wanted).T).max() < 0.01
     assert np.abs(tips[:, 2]).max() < 0.01
@@ -51,7 +51,7 @@ def test_a_stroke_stays_in_one_branch(arm: Arm, method: Method) -> None:
     paths = two_strokes(arm)
     splines, _ = joint_paths(kinematics_of(arm), references_for(arm, method), paths)
     fractions = np.linspace(0, 1, 5)
-    joints, points = splines.positions(fractions), paths.points(fractions)
+    joints, points = splines.positions(fractions), paths.positions(fractions)
     taken_s = np.abs(np.diff(joints[..., list(arm.independent_joints)], axis=1)) / joint_scale(kinematics_of(arm))
     drawn_mm = np.linalg.norm(np.diff(points, axis=1), axis=2)
     moving = drawn_mm > 0.02  # but for the first crawl out of rest

