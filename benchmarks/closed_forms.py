@@ -25,7 +25,8 @@ from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.arm_file import load_arm
 from planner.arrays import BoolArray, FloatArray
 from planner.inverse_kinematics.closed_forms import FAMILIES
-from planner.inverse_kinematics.closed_forms.branches import Branches, within_limits
+from planner.inverse_kinematics.closed_forms.branches import Branches
+from planner.kinematics.limits import within_limits
 
 ARMS = ("drawing_arm", "scara", "three_joint", "six_joint", "stanford")
 Solver = Callable[[FloatArray], FloatArray]
@@ -228,7 +229,7 @@ def closed_form(arm: Arm, target: FloatArray, joints: FloatArray) -> None:
         began = time.perf_counter()
         branches = call()
         seconds = time.perf_counter() - began
-        inside = within_limits(arm, branches)
+        inside = within_limits(arm, arm.complete(branches.configurations))
         best = np.where(inside.any(axis=1), inside.argmax(axis=1), branches.exist.argmax(axis=1))
         found = arm.complete(branches.configurations[np.arange(len(target)), best])
         off, turned = misses(arm, found, target)

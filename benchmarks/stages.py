@@ -19,21 +19,25 @@ from typing import Any
 
 from planner import pipeline
 from planner.errors import PlannerError
-from planner.execution import work_chunks
+from planner.motion import held_motion, line
 from planner.settings import Method, PlanSettings
 from planner.trajectory import write_trajectory
+from planner.travel import clear_moves
 
 STAGES = {
     "read_drawing": "read",
     "flatten_all": "flatten",
     "join_strokes": "join",
     "ordered": "order",
-    "smooth_paths": "smooth",
+    "smoothed": "smooth",
     "joint_paths": "configurations",
     "minimum_time": "timing",
     "motions": "check limits",
     "plan_travel_moves": "travel moves",
 }
+
+MODULES = (pipeline, line, held_motion, clear_moves)
+"""Where these are called."""
 
 
 def _counted(function: Callable[..., Any], stage: str, spent: Counter[str]) -> Callable[..., Any]:
@@ -67,7 +71,7 @@ def main() -> None:
     order = pipeline.ordered
     pipeline.ordered = order_and_count
     for name, stage in STAGES.items():
-        module = pipeline if hasattr(pipeline, name) else work_chunks
+        module = next(module for module in MODULES if hasattr(module, name))
         setattr(module, name, _counted(getattr(module, name), stage, spent))
     drawings = sorted(options.folder.glob("*.svg"))
     if not drawings:

@@ -18,17 +18,12 @@ from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import extent, flatten_all
 from planner.drawing.join import join_strokes
-from planner.drawing.order import Metric, ordered
+from planner.drawing.metric import Metric
+from planner.drawing.order import ordered
 from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
+from planner.execution.context import PlanContext
 from planner.execution.work_chunks import (
-    CHORD_SHARE,
-    SAMPLE_SHARE,
-    SMOOTH_SHARE,
-    PlanContext,
-    TimedStroke,
-    make_ready,
-    pen_speed_mm_s,
     pieces_of,
     planned_travel_moves,
     stroke_chunks,
@@ -38,28 +33,26 @@ from planner.execution.work_chunks import (
 from planner.execution.workers import ALONE, ChunkExecutor, Workers, executor_of
 from planner.head import LeftOut, Placement
 from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
-from planner.kinematics.chain import kinematics_of
+from planner.kinematics.limits import Limits
+from planner.motion.speed_limit import pen_speed_mm_s
+from planner.motion.timed_stroke import TimedStroke
+from planner.motion.tolerance import FLATTEN_SHARE, JOIN_SHARE
 from planner.phases import phases_of
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
 from planner.placement.pieces import Piece
 from planner.placement.split import split_strokes
-from planner.redundancy.configuration_map import ConfigurationMap, configuration_branches
+from planner.progress import Report
+from planner.redundancy.arm_model import ArmModel
+from planner.redundancy.configuration_map import ConfigurationMap
 from planner.settings import Method, PlanSettings
 from planner.stroke_figures import stroke_figures
 from planner.summary import PhaseTimes, PlanSummary
 from planner.timing.length_bound import require_bounded
-from planner.timing.limits import Limits
 from planner.trajectory import TRAVELLING, Trajectory
 from planner.travel.travel_moves import TravelMove, TravelRules
 from planner.travel.travel_time_metric import travel_time_metric
-from planner.workspace.canvas import canvas_of
-
-Report = Callable[[str, int, int], None]
-"""Told the stage, how much of it is done, and how much there is."""
-
-_FLATTEN_SHARE = _JOIN_SHARE = 0.5 * (1.0 - SMOOTH_SHARE - SAMPLE_SHARE - CHORD_SHARE)
-"""Shares of the tolerance that are left for chords in the place of curves, and for gaps that are closed."""
+from planner.workspace.canvas import Canvas, canvas_of
 
 _SMALL_BYTES = 60_000
 """Drawings in shorter files, of a few thousand points, are done sooner than worker processes have started."""
@@ -80,16 +73,17 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
     exists."""
     report("reading", 0, 1)
     context = PlanContext.of(load_arm(settings.arm), settings)
-    arm = context.arm
+    model, arm = context.model, context.model.arm
     lift_mm = _lift_mm(arm, settings)
-    with executor_of(_worth_hiring(workers, drawing_file), partial(make_ready, context)) as executor:
+    with executor_of(_worth_hiring(workers, drawing_file), context.make_ready) as executor:
         drawing = read_drawing(drawing_file, partial(report, "reading"))
         report("placing", 0, 1)
-        svg_to_arm, placement, scale, size_mm = _placed(drawing, arm, settings, lift_mm)
+        canvas = canvas_of(model, settings.canvas, lift_mm)
+        svg_to_arm, placement, scale, size_mm = _placed(drawing, canvas, settings)
         report("joining", 0, 1)
-        strokes, left_out, warnings = _strokes(drawing, svg_to_arm, arm, settings)
+        strokes, left_out, warnings = _strokes(drawing, svg_to_arm, model, settings)
         report("ordering strokes", 0, 1)
-        strokes, order_notes = _ordered(strokes, arm, settings, lift_mm)
+        strokes, order_notes = _ordered(strokes, model, canvas)
         _require_bounded(strokes, arm, settings, lift_mm)
         timed, strokes, lost, notes = _timed_strokes(executor, context, strokes, report)
         timed, strokes, moves, more_lost, more_notes = _with_travel_moves(
@@ -99,17 +93,18 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
     left_out += lost + more_lost
     trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, placement, left_out, timed, moves)
     _verify(trajectory, arm)
-    return Plan(trajectory, _summary(trajectory, arm, timed, scale, size_mm, warnings), drawing)
+    return Plan(trajectory, _summary(trajectory, model, timed, scale, size_mm, warnings), drawing)
 
 
-def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> tuple[list[FloatArray], list[str]]:
+def placed_strokes(drawing_file: Path, model: ArmModel, settings: PlanSettings) -> tuple[list[FloatArray], list[str]]:
     """Strokes (n, 2) in arm mm, placed and in the order that they are planned in, and what was left out on the way.
     Errors: PlannerError."""
-    lift_mm = _lift_mm(arm, settings)
+    lift_mm = _lift_mm(model.arm, settings)
     drawing = read_drawing(drawing_file)
-    svg_to_arm, _, _, _ = _placed(drawing, arm, settings, lift_mm)
-    strokes, _, warnings = _strokes(drawing, svg_to_arm, arm, settings)
-    strokes, notes = _ordered(strokes, arm, settings, lift_mm)
+    canvas = canvas_of(model, settings.canvas, lift_mm)
+    svg_to_arm, _, _, _ = _placed(drawing, canvas, settings)
+    strokes, _, warnings = _strokes(drawing, svg_to_arm, model, settings)
+    strokes, notes = _ordered(strokes, model, canvas)
     return strokes, warnings + notes
 
 
@@ -120,12 +115,9 @@ def _lift_mm(arm: Arm, settings: PlanSettings) -> float:
     return lift_mm
 
 
-def _ordered(
-    strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float
-) -> tuple[list[FloatArray], list[str]]:
+def _ordered(strokes: Sequence[FloatArray], model: ArmModel, canvas: Canvas) -> tuple[list[FloatArray], list[str]]:
     """The strokes in the order that they are drawn in, and what is to be said of it."""
-    canvas = canvas_of(arm, settings.canvas, lift_mm)  # found once, when the drawing was placed
-    start_mm, metric = canvas.to_arm_mm(np.zeros(2)), Metric(travel_time_metric(arm), exponent=1 / 3)
+    start_mm, metric = canvas.to_arm_mm(np.zeros(2)), Metric(travel_time_metric(model), exponent=1 / 3)
     strokes, is_finished = ordered(strokes, start_mm, metric)
     note = f"a shorter way between the strokes may be left: {len(strokes)} are too many to search to the end"
     return strokes, [] if is_finished else [note]
@@ -156,11 +148,10 @@ def _worth_hiring(workers: Workers, drawing_file: Path) -> Workers:
 
 
 def _placed(
-    drawing: Drawing, arm: Arm, settings: PlanSettings, lift_mm: float
+    drawing: Drawing, canvas: Canvas, settings: PlanSettings
 ) -> tuple[FloatArray, Placement, float, tuple[float, float]]:
     """The affine from SVG user units to arm millimetres, what is told of it, its scale against the page, and the size
     on paper."""
-    canvas = canvas_of(arm, settings.canvas, lift_mm)
     turned = compose(rotation(settings.rotate_deg), drawing.user_to_page)
     low, high = extent(drawing.outlines, turned)
     onto_arm = fit_to_canvas(
@@ -178,7 +169,7 @@ def _placed(
 
 
 def _strokes(
-    drawing: Drawing, svg_to_arm: FloatArray, arm: Arm, settings: PlanSettings
+    drawing: Drawing, svg_to_arm: FloatArray, model: ArmModel, settings: PlanSettings
 ) -> tuple[list[FloatArray], LeftOut, list[str]]:
     """Strokes (n, 2), arm mm, what was left out as out of reach, and what is to be said of them."""
     warnings = []
@@ -186,9 +177,9 @@ def _strokes(
     if drawing.skipped:
         counts = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
         warnings.append(f"not drawn as in the SVG: {counts}")
-    strokes = flatten_all(drawing.outlines, svg_to_arm, _FLATTEN_SHARE * settings.tolerance_mm)
-    strokes = join_strokes(strokes, _JOIN_SHARE * settings.tolerance_mm)
-    branches = configuration_branches(arm, settings.weights)
+    strokes = flatten_all(drawing.outlines, svg_to_arm, FLATTEN_SHARE * settings.tolerance_mm)
+    strokes = join_strokes(strokes, JOIN_SHARE * settings.tolerance_mm)
+    branches = model.branches(settings.weights)
     if settings.skip_unreachable:
         n_taps = _drawn(strokes).taps
         strokes, lost_mm, lost_whole = clip_strokes(
@@ -316,7 +307,7 @@ def _travel_moves(
     executor: ChunkExecutor, context: PlanContext, timed: Sequence[TimedStroke], lift_mm: float, report: Report
 ) -> list[TravelMove]:
     """The pen-up moves before, between and after the strokes."""
-    arm, settings = context.arm, context.settings
+    arm, settings = context.model.arm, context.settings
     rules = TravelRules(
         arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz, settings.tolerance_mm
     )
@@ -402,13 +393,14 @@ def _verify(trajectory: Trajectory, arm: Arm) -> None:
 
 def _summary(
     trajectory: Trajectory,
-    arm: Arm,
+    model: ArmModel,
     timed: Sequence[TimedStroke],
     scale: float,
     size_mm: tuple[float, float],
     warnings: list[str],
 ) -> PlanSummary:
-    tips_mm = kinematics_of(arm).tip_mm(kinematics_of(arm).independent_of(arm.from_file_units(trajectory.positions)))
+    arm = model.arm
+    tips_mm = model.kinematics.tip_mm(arm.independent_of(arm.from_file_units(trajectory.positions)))
     phases = PhaseTimes.of(phases_of(trajectory, tips_mm, arm.pen.clearance_mm), trajectory.rate_hz)
     return PlanSummary(
         n_strokes=len(timed),

@@ -14,6 +14,7 @@ from planner.inverse_kinematics import dls, guesses, nlp
 from planner.redundancy import cost
 from planner.settings import PlanSettings
 from planner.workspace.canvas import usable_canvas
+from tests.arms.chains import model_of
 
 _DOCS = Path(__file__).resolve().parent.parent / "docs"
 
@@ -46,7 +47,7 @@ def test_a_figure_in_the_prose_is_that_of_the_code(page: str, phrase: str, value
 @pytest.mark.parametrize("name", known_arms())
 def test_the_table_of_arms_tells_their_canvases(name: str) -> None:
     arm = load_arm(name)
-    canvas = usable_canvas(arm, arm.pen.lift_mm)
+    canvas = usable_canvas(model_of(arm), arm.pen.lift_mm)
     row = next(
         line
         for line in (_DOCS / "arms.md").read_text(encoding="utf-8").splitlines()

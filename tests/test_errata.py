@@ -16,10 +16,9 @@ import pytest
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.closed_forms import scara, six_joint, three_joint
-from planner.kinematics.chain import kinematics_of
 from planner.kinematics.joint_time import joint_time_s
 from planner.workspace.canvas import documented_canvas, geometric_reach_mm, optimal_canvas
-from tests.arms.chains import dh_frames, dh_matrix, load_once
+from tests.arms.chains import dh_frames, dh_matrix, kinematics_of, load_once, model_of
 
 RNG_SEED = 20060101
 OFF = 0.05
@@ -104,7 +103,7 @@ def test_largest_radius() -> None:
     arm = load_once("drawing_arm")
     shorter = replace(arm, joints=(*arm.joints[:4], replace(arm.joints[4], a_mm=30.0)))
     l1, l5 = 50.0, 30.0
-    reach = geometric_reach_mm(shorter)
+    reach = geometric_reach_mm(model_of(shorter))
     assert reach == pytest.approx(np.sqrt(150.0**2 - (l5 - l1) ** 2), abs=1e-4)
     assert abs(reach - np.sqrt(150.0**2 + (l5 - l1) ** 2)) > OFF
 

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from planner.timing.limits import Limits
 
 from planner.errors import PlanError
 from planner.kinematics.chain import kinematics_of
 from planner.pipeline import plan
 from planner.redundancy.configuration_map import configuration_map_of
 from planner.settings import CanvasKind, PlanSettings
-from planner.timing.limits import Limits
 from planner.travel import travel_moves
 from planner.travel.branch_change import plan_branch_change
 from planner.travel.travel_moves import Contact, TravelRules

@@ -24,7 +24,7 @@ from planner.placement import pieces
 from planner.settings import CanvasKind, Method, PlanSettings
 from planner.trajectory import TRAVELLING, Trajectory, write_trajectory
 from planner.workspace.canvas import canvas_of
-from tests.arms.chains import DRAWING_ARMS, load_once
+from tests.arms.chains import DRAWING_ARMS, load_once, model_of
 from tests.drawn_shapes import Shape, bezier, drawings_made, ellipse, polyline, svg_of, tap
 
 TOLERANCE_MM = 0.05
@@ -146,7 +146,7 @@ def test_drawings_fill_their_canvas(tmp_path: Path, canvas: CanvasKind, rotate_d
     arm = load_once("drawing_arm")
     wanted = PlanSettings(canvas=canvas, rotate_deg=rotate_deg, margin_mm=8.0)
     result = planned(tmp_path, [ellipse(30, 30, 20, 20)], wanted)
-    where = canvas_of(arm, canvas, arm.pen.lift_mm)
+    where = canvas_of(model_of(arm), canvas, arm.pen.lift_mm)
     ((x, y),) = (line.T for line in placed(result.trajectory, [ellipse(30, 30, 20, 20)]))
     np.testing.assert_allclose(
         [(x.min() + x.max()) / 2, (y.min() + y.max()) / 2],

@@ -10,9 +10,10 @@ import pytest
 from planner.arms.arm import Arm
 from planner.arms.arm_file import arms_folder, load_arm
 from planner.cli import main
-from planner.redundancy.configuration_map import configuration_branches, within_limits
+from planner.kinematics.limits import within_limits
 from planner.trajectory import TRAVELLING, read_trajectory
 from planner.workspace.canvas import usable_canvas
+from tests.arms.chains import model_of
 
 LIMITS = {"q1": (-270.0, 90.0), "q2": (40.0, 178.0), "q3": (-150.0, 60.0), "q5": (-300.0, 60.0)}
 TRIANGLE = '<g fill="none" stroke="black"><path d="M5 5 L110 85 L215 5 Z"/><path d="M110 5 V85"/></g>'
@@ -50,11 +51,11 @@ def drawing(tmp_path: Path) -> Path:
 
 
 def test_two_sheets_reach_what_neither_reaches_alone(arm: Arm) -> None:
-    near, far = configuration_branches(arm)
+    near, far = model_of(arm).branches()
     assert near.radii_mm[0] < far.radii_mm[0] < near.radii_mm[-1] < far.radii_mm[-1]
     for sheet in (near, far):
-        assert within_limits(arm, sheet.configurations).all()
-    corners = np.hypot(*usable_canvas(arm, arm.pen.lift_mm).corners_arm_mm.T)
+        assert within_limits(arm, arm.complete(sheet.configurations)).all()
+    corners = np.hypot(*usable_canvas(model_of(arm), arm.pen.lift_mm).corners_arm_mm.T)
     assert corners.max() > near.radii_mm[-1] + 5 and corners.min() < far.radii_mm[0] - 5
 
 

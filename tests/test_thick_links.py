@@ -17,15 +17,16 @@ from planner.checking.check import check_trajectory
 from planner.cli import main
 from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide
-from planner.execution.work_chunks import PlanContext, TravelChunk, planned_travel_moves
+from planner.execution.context import PlanContext
+from planner.execution.work_chunks import TravelChunk, planned_travel_moves
 from planner.execution.workers import ALONE
 from planner.kinematics.link_clearance import Collision
+from planner.motion.timed_stroke import Contact
 from planner.pipeline import plan
-from planner.redundancy.configuration_map import configuration_map_of
 from planner.settings import PlanSettings
 from planner.trajectory import TRAVELLING, Trajectory, read_trajectory
-from planner.travel.travel_moves import Contact, TravelMove, TravelRules
-from tests.arms.chains import load_once, thick
+from planner.travel.travel_moves import TravelMove, TravelRules
+from tests.arms.chains import load_once, model_of, thick
 
 LINES = ("M20 5 H200", "M110 20 V50", "M100 89 H120")  # the last one near the base, where the arm folds most
 
@@ -88,7 +89,7 @@ def test_a_method_that_runs_into_itself_is_refused_or_left_out(
 
 def test_hops_between_configurations_that_collide_are_told() -> None:
     """At its inner edge the field of the thin arm folds."""
-    arm, field = thick(load_once("drawing_arm")), configuration_map_of(load_once("drawing_arm"))
+    arm, field = thick(load_once("drawing_arm")), model_of(load_once("drawing_arm")).configuration_map()
     tips = np.array([[field.radii_mm[0] + 0.1, 0.0], [100.0, 0.0]])
     configurations, _ = field.configurations_at(np.column_stack((tips, np.zeros(2))))
     near, far = (Contact(tip, configuration) for tip, configuration in zip(tips, configurations, strict=True))

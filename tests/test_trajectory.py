@@ -13,8 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planner.errors import OutputError, TrajectoryFileError
+from planner.files import written_aside
 from planner.head import LeftOut, Placement
-from planner.trajectory import TRAVELLING, Trajectory, read_trajectory, write_trajectory, written_aside
+from planner.trajectory import TRAVELLING, Trajectory, read_trajectory, write_trajectory
 
 AFFINE = (0.0, -0.25, -0.25, 0.0, 133.2, 60.1)
 coordinates = st.floats(-1e6, 1e6, allow_subnormal=False)

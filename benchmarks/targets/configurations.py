@@ -117,7 +117,7 @@ def figures(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> 
     pen, joint_splines, infeasible_paths = followed(arm, strokes, settings)
     blocked = {infeasible_path.path for infeasible_path in infeasible_paths}
     joints = joint_splines.positions(_FRACTIONS)
-    weight = np.hypot(*np.moveaxis(pen.points(_FRACTIONS, 1), 2, 0))
+    weight = np.hypot(*np.moveaxis(pen.positions(_FRACTIONS, 1), 2, 0))
     drawn = np.array([settings.method is Method.DLS or path not in blocked for path in range(len(strokes))])
     of_path = np.repeat(np.arange(len(strokes)), joint_splines.n_cells)
     weight[~drawn[of_path]] = 0.0

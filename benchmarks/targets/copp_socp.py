@@ -21,10 +21,12 @@ from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import interpolate
-from planner.inverse_kinematics.stroke_configurations import configurations_at, exact_configurations
+from planner.inverse_kinematics.references import references_of
+from planner.inverse_kinematics.stroke_configurations import exact_configurations
+from planner.kinematics.limits import Limits
 from planner.motion.stroke_motion import motions
+from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
-from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS
 from planner.workspace.canvas import canvas_of
@@ -68,7 +70,8 @@ def against_copp(settings: PlanSettings) -> list[Row]:
 
 def _lissajous(arm: Arm, settings: PlanSettings) -> BSpline[np.float64]:
     """Joints over the share s in [0, 1] of the pen's way."""
-    canvas = canvas_of(arm, settings.canvas, arm.pen.lift_mm)
+    model = ArmModel(arm)
+    canvas = canvas_of(model, settings.canvas, arm.pen.lift_mm)
     corners = canvas.to_arm_mm(np.array([[0.0, 0.0], [canvas.width_mm, canvas.height_mm]]))
     middle, half = corners.mean(axis=0), 0.4 * np.abs(corners[1] - corners[0])
     phase = np.linspace(0.1, 0.1 + 2 * np.pi, 20001)
@@ -77,7 +80,8 @@ def _lissajous(arm: Arm, settings: PlanSettings) -> BSpline[np.float64]:
     share = np.linspace(0.0, 1.0, _CELLS + 1)
     at = make_interp_spline(way / way[-1], phase, k=5)(share)
     tips = np.column_stack((middle + half * np.column_stack((np.sin(2 * at), np.sin(at))), np.zeros(len(at))))
-    independent, _ = exact_configurations(arm, configurations_at(arm, settings.method, tips), tips)
+    references = references_of(model, settings.method, settings.weights).at(tips)
+    independent, _ = exact_configurations(model.kinematics, references, tips)
     return make_interp_spline(share, arm.complete(independent), k=7)
 
 

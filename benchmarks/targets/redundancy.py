@@ -14,15 +14,14 @@ from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.errors import PlanError
 from planner.kinematics.projection import Pins, project
+from planner.redundancy.arm_model import ArmModel
 from planner.redundancy.configuration_map import (
     ConfigurationMap,
     choice_of_configurations,
-    configuration_map_of,
     sharp_configuration_path,
 )
 from planner.redundancy.configuration_path import (
     cheapest_configuration_path,
-    configuration_path_cost,
     polished_configuration_path,
 )
 from planner.redundancy.configuration_tests import usable_configurations
@@ -49,9 +48,10 @@ def against_brute_force(drawing: Path, settings: PlanSettings) -> list[Row]:
     """The field's course against a dense search over all configurations of the ray; and, the price of the same
     configuration at the same place, the map along short strokes against a dense search for each of them."""
     arm = load_arm(settings.arm)
-    cost, radii, samples = choice_of_configurations(arm, settings.weights)
+    model = ArmModel(arm)
+    cost, radii, samples = choice_of_configurations(model.kinematics, settings.weights)
     nodes, sharp = sharp_configuration_path(cost, radii, samples)
-    configuration_map = configuration_map_of(arm, settings.weights)
+    configuration_map = model.configuration_map(settings.weights)
     pool = np.concatenate(samples)
     dense = best_of_dense(cost, nodes, on_ray(nodes), pool)
     ours, rounded, brute = (
@@ -106,6 +106,19 @@ def stations(stroke: FloatArray) -> tuple[FloatArray, FloatArray]:
     along = np.linspace(0.0, way[-1], int(np.ceil(way[-1] / _STATION_MM)) + 1)
     x, y = (np.interp(along, way, column) for column in stroke.T)
     return along, np.column_stack((x, y, np.zeros(len(along))))
+
+
+def configuration_path_cost(cost: ConfigurationCost, along_mm: FloatArray, configuration_path: FloatArray) -> float:
+    """What a course costs: the mean of its densities over the way."""
+    lengths = np.diff(along_mm)
+    own, steps = (
+        cost.configurations(configuration_path),
+        np.diff(cost.kinematics.arm.complete(configuration_path), axis=0),
+    )
+    total = 0.5 * (own[1:] + own[:-1]) @ lengths + sum(
+        float(cost.steps(step, length)) * length for step, length in zip(steps, lengths.tolist(), strict=True)
+    )
+    return float(total / lengths.sum())
 
 
 def best_of_dense(cost: ConfigurationCost, along_mm: FloatArray, tips_mm: FloatArray, pool: FloatArray) -> FloatArray:

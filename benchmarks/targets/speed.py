@@ -13,7 +13,7 @@ from benchmarks.targets.strokes import lines, placed_strokes
 from planner.arms.arm_file import load_arm
 from planner.inverse_kinematics import nlp
 from planner.inverse_kinematics.closed_forms import family_of
-from planner.redundancy.configuration_map import configuration_map_of
+from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
 
 _CLOSED_TARGETS = 500_000
@@ -25,10 +25,11 @@ _NLP_TARGETS = 2000
 def configurations(drawing: Path, settings: PlanSettings) -> list[Row]:
     """Targets are the points of the drawing's strokes, repeated as often as needed."""
     arm = load_arm(settings.arm)
+    model = ArmModel(arm)
     points = np.concatenate(lines(placed_strokes(drawing, arm, settings)))
     tips = np.column_stack((points, np.zeros(len(points))))
     many = np.resize(tips, (_CLOSED_TARGETS, 3))
-    pitch = arm.complete(configuration_map_of(arm).reference(many))[:, 1:4].sum(axis=1)
+    pitch = arm.complete(model.configuration_map().reference(many))[:, 1:4].sum(axis=1)
     at_tip = family_of(arm).at_tip
     at_tip(arm, many, pitch)
     began = time.perf_counter()
@@ -36,11 +37,11 @@ def configurations(drawing: Path, settings: PlanSettings) -> list[Row]:
     closed_us = (time.perf_counter() - began) / len(many) * 1e6
     longest = max(lines(placed_strokes(drawing, arm, settings)), key=len)[:_NLP_TARGETS]
     few = np.column_stack((longest, np.zeros(len(longest))))
-    home = configuration_map_of(arm).home
+    home, solver = model.configuration_map().home, nlp.NlpSolver(model.kinematics)
     runs_s = []
     for _ in range(_NLP_RUNS):
         began = time.perf_counter()
-        nlp.solve_sequence(arm, few, home)
+        solver.solve_sequence(few, home)
         runs_s.append(time.perf_counter() - began)
     warm_us = min(runs_s) / len(few) * 1e6
     return [

@@ -18,13 +18,20 @@ from planner.arrays import FloatArray, IntArray
 from planner.drawing.order import order_strokes
 from planner.drawing.svg import read_drawing
 from planner.execution import work_chunks
-from planner.inverse_kinematics.joint_path import DEGREE, JointPaths
+from planner.execution.context import PlanContext
+from planner.inverse_kinematics.joint_path import JointPaths
+from planner.inverse_kinematics.references import references_of
 from planner.inverse_kinematics.stroke_configurations import InfeasiblePath, joint_paths
+from planner.kinematics.chain import Kinematics
+from planner.kinematics.limits import Limits
+from planner.motion.line import TIMING_SUBDIVISIONS, pen_speed_limit
 from planner.motion.stroke_motion import StrokeMotions, motions
+from planner.motion.tolerance import SMOOTH_SHARE
 from planner.placement.pen_path import PenPaths, smooth_paths
 from planner.ragged import starts_of
+from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
-from planner.timing.limits import Limits
+from planner.spline_paths import DEGREE
 from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 from planner.workspace.canvas import canvas_of
@@ -96,9 +103,11 @@ def drawings(folder: Path) -> list[Path]:
 def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> list[FloatArray]:
     """Polylines (n, 2) in arm mm in drawing order; taps have one point."""
     drawing = read_drawing(drawing_file)
-    svg_to_arm, _, _ = pipeline._placed(drawing, arm, settings, arm.pen.lift_mm)
-    strokes, _ = pipeline._strokes(drawing, svg_to_arm, arm, settings)
-    return order_strokes(strokes, canvas_of(arm, settings.canvas, arm.pen.lift_mm).to_arm_mm(np.zeros(2)))
+    model = ArmModel(arm)
+    canvas = canvas_of(model, settings.canvas, arm.pen.lift_mm)
+    svg_to_arm, _, _, _ = pipeline._placed(drawing, canvas, settings)
+    strokes, _, _ = pipeline._strokes(drawing, svg_to_arm, model, settings)
+    return order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)))
 
 
 def lines(strokes: Sequence[FloatArray], longer_than_mm: float = 0.0) -> list[FloatArray]:
@@ -120,17 +129,19 @@ def followed(
     arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
 ) -> tuple[PenPaths, JointPaths, list[InfeasiblePath]]:
     """Pen and joint paths of polylines, and those that cannot be followed, before timing."""
-    pen = smooth_paths(strokes, work_chunks.SMOOTH_SHARE * settings.tolerance_mm)
-    return pen, *joint_paths(arm, settings.method, pen, settings.weights)
+    pen = smooth_paths(strokes, SMOOTH_SHARE * settings.tolerance_mm)
+    model = ArmModel(arm)
+    references = references_of(model, settings.method, settings.weights)
+    return pen, *joint_paths(model.kinematics, references, pen)
 
 
 def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> TimedPaths:
     """The planner's timing of polylines, those that cannot be followed as well."""
     pen, joints, _ = followed(arm, strokes, settings)
-    for _ in range(work_chunks._TIMING_SUBDIVISIONS):
+    for _ in range(TIMING_SUBDIVISIONS):
         pen, joints = pen.subdivided(), joints.subdivided()
     limits = Limits.of(arm)
-    return _timed(pen, joints, work_chunks.pen_speed_limit(arm, pen, joints, settings), limits)
+    return _timed(pen, joints, pen_speed_limit(Kinematics(arm), pen, joints, settings), limits)
 
 
 def _timed(pen: PenPaths, joints: JointPaths, cap: FloatArray, limits: Limits) -> TimedPaths:
@@ -140,7 +151,7 @@ def _timed(pen: PenPaths, joints: JointPaths, cap: FloatArray, limits: Limits) -
 
 def timed_in_chunks(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedPaths]:
     """The same in the work chunks and pieces that the planner makes of them."""
-    context = work_chunks.PlanContext.of(arm, settings)
+    context = PlanContext.of(arm, settings)
     cut = work_chunks.stroke_chunks(context, list(chain.from_iterable(work_chunks.pieces_of(context, strokes))))
     return [timed(arm, chunk.strokes, settings) for chunk in cut]
 

@@ -17,10 +17,12 @@ from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.drawing.order import ordered
 from planner.errors import PlannerError
-from planner.inverse_kinematics.stroke_configurations import configurations_at, exact_configurations
+from planner.inverse_kinematics.references import references_of
+from planner.inverse_kinematics.stroke_configurations import exact_configurations
+from planner.kinematics.limits import Limits
+from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
 from planner.summary import PhaseTimes
-from planner.timing.limits import Limits
 from planner.travel.ruckig_profile import rest_to_rest
 
 _SAMPLES_PER_CELL = 20
@@ -88,7 +90,9 @@ def stopping_s(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) 
     limits = Limits.of(arm)
     points = np.concatenate(strokes)
     tips = np.column_stack((points, np.zeros(len(points))))
-    independent, _ = exact_configurations(arm, configurations_at(arm, settings.method, tips), tips)
+    model = ArmModel(arm)
+    references = references_of(model, settings.method, settings.weights).at(tips)
+    independent, _ = exact_configurations(model.kinematics, references, tips)
     steps = np.maximum(np.abs(np.diff(arm.complete(independent), axis=0)), 1e-12)
     way_mm = np.maximum(np.hypot(*np.diff(points, axis=0).T), 1e-12)
     inside = np.ones(len(steps), dtype=bool)

@@ -25,7 +25,7 @@ from hardware.playback.journal_entry import COMPLETE, VERSION, Entry
 from hardware.playback.sample_map import Piece, piece, sample_after
 from planner.arrays import FloatArray
 from planner.errors import OutputError, TrajectoryFileError
-from planner.trajectory import written_aside
+from planner.files import written_aside
 
 _COUNTS_LENGTH = 140
 """Of the line that is written over: three numbers of 15 digits, one of 22, and their names."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,7 +62,7 @@ def make_program(
     *,
     from_stroke: int = 0,
     from_sample: int | None = None,
-    park: FloatArray | None = None,
+    park: Sequence[float] | FloatArray | None = None,
 ) -> Program:
     """The program of `set_points` (n_samples, n_joints; rad or mm) and their `stroke` (n_samples,) labels.
 
@@ -81,10 +82,10 @@ def make_program(
         labels = np.concatenate((labels[[first, *np.floor(joining.at).astype(np.int64)]], labels[joining.end + 1 :]))
         body = np.concatenate((rest[None], joining.points, body[joining.end + 1 :]))
         sample = np.concatenate(([first / refine], joining.at / refine, sample[joining.end + 1 :]))
-    if park is None:
-        park = _park(arm, set_points, rate_hz)
-    out, back = slow_transfer(arm, park, descent[0], rate_hz), slow_transfer(arm, body[-1], park, rate_hz)
-    out = np.concatenate((park[None], out, descent[1:]))[:-1]  # it ends where the body begins
+    rest_pose = _park(arm, set_points, rate_hz) if park is None else np.asarray(park)
+    out = slow_transfer(arm, rest_pose, descent[0], rate_hz)
+    back = slow_transfer(arm, body[-1], rest_pose, rate_hz)
+    out = np.concatenate((rest_pose[None], out, descent[1:]))[:-1]  # it ends where the body begins
     ends = len(out), len(back)
     return Program(
         np.concatenate((out, body, back)),
@@ -95,9 +96,11 @@ def make_program(
     )
 
 
-def parking(arm: Arm, set_points: FloatArray, rate_hz: float, park: FloatArray | None = None) -> Program:
+def parking(
+    arm: Arm, set_points: FloatArray, rate_hz: float, park: Sequence[float] | FloatArray | None = None
+) -> Program:
     """A program that draws nothing any more: where `make_program` would park, and that is all."""
-    where = _park(arm, set_points, rate_hz) if park is None else park
+    where = _park(arm, set_points, rate_hz) if park is None else np.asarray(park)
     return Program(where[None], np.array([TRAVELLING]), np.array([len(set_points) - 1.0]), rate_hz, 0, 0)
 
 

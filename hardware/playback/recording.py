@@ -11,7 +11,7 @@ from hardware.compensation.servo_values import Calibration
 from hardware.motion.tip import link_nodes_mm
 from hardware.playback.program import Program
 from planner.arms.arm import Arm
-from planner.trajectory import written_aside
+from planner.files import written_aside
 
 
 def write_record(arm: Arm, program: Program, calibration: Calibration, target: Path) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from hardware.motion.tip import link_nodes_mm
 from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray
-from planner.trajectory import written_aside
+from planner.files import written_aside
 
 _GIVES = 0.9
 _MARGIN_MM = 5.0

@@ -150,9 +150,10 @@ class Workspace:
     min_tip_speed_mm_s: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Arm:
-    """A checked arm. Joint arrays are in chain order, in rad or mm; closed_form names its family, if any.
+    """A checked arm. Joint arrays are in chain order, in rad or mm; closed_form names its family, if any. Two arms are
+    equal where all of this is.
 
     park: (n_joints,) where the arm rests when it is not used, if the builder says. paper: where the paper lies.
     accuracy: what a calibration left unknown, where there was one. weights: what spare joints are spent on, where
@@ -166,7 +167,7 @@ class Arm:
     pen: Pen
     workspace: Workspace
     closed_form: str | None = None
-    park: FloatArray | None = None
+    park: tuple[float, ...] | None = None
     paper: PaperPose = BASE_PLANE
     accuracy: Accuracy | None = None
     weights: ConfigurationWeights = EVEN_WEIGHTS
@@ -232,6 +233,11 @@ class Arm:
         matrix, constant = self.coupling_matrix
         joints: FloatArray = independent @ matrix.T + constant
         return joints
+
+    def independent_of(self, joints: FloatArray) -> FloatArray:
+        """The independent joints (..., n_independent) among all (..., n_joints)."""
+        chosen: FloatArray = np.ascontiguousarray(joints[..., list(self.independent_joints)])
+        return chosen
 
     def to_file_units(self, positions: FloatArray) -> FloatArray:
         """(..., n_joints) from rad or mm to the degrees and millimetres of files."""

@@ -23,7 +23,7 @@ from planner.arms.servo_section import (
     TurningBusSection,
     TurningServoSection,
 )
-from planner.arrays import FloatArray, frozen
+from planner.arrays import FloatArray
 from planner.errors import ArmFileError, UnknownArm
 from planner.settings import ConfigurationWeights
 
@@ -250,7 +250,7 @@ def read_arm_file(path: Path) -> Arm:
     faults = _beyond_limits(arm, parked)
     if faults:
         raise ArmFileError(str(path), faults)
-    return replace(arm, park=parked)
+    return replace(arm, park=tuple(parked.tolist()))
 
 
 def _text(path: Path) -> str:
@@ -429,7 +429,7 @@ def _accuracy(section: _AccuracySection, joints: tuple[Joint, ...]) -> Accuracy:
 def _parked(arm: Arm, park: dict[str, float]) -> FloatArray:
     """(n_joints,) rad or mm; couplings fill in what they drive."""
     independent = [arm.joints[index] for index in arm.independent_joints]
-    return frozen(arm.complete(np.array([park[joint.name] * joint.per_file_unit for joint in independent])))
+    return arm.complete(np.array([park[joint.name] * joint.per_file_unit for joint in independent]))
 
 
 def _beyond_limits(arm: Arm, parked: FloatArray) -> list[str]:

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from planner.arms.arm import Arm
+from planner.json_numbers import rounded
 
 
 def arm_description(arm: Arm) -> dict[str, Any]:
@@ -23,35 +24,31 @@ def arm_description(arm: Arm) -> dict[str, Any]:
                 "name": joint.name,
                 "kind": joint.kind.value,
                 "unit": joint.file_unit,
-                "min": _clean(joint.minimum / joint.per_file_unit),
-                "max": _clean(joint.maximum / joint.per_file_unit),
-                "max_velocity": _clean(joint.max_velocity / joint.per_file_unit),
-                "max_acceleration": _clean(joint.max_acceleration / joint.per_file_unit),
-                "max_jerk": _clean(joint.max_jerk / joint.per_file_unit),
+                "min": rounded(joint.minimum / joint.per_file_unit),
+                "max": rounded(joint.maximum / joint.per_file_unit),
+                "max_velocity": rounded(joint.max_velocity / joint.per_file_unit),
+                "max_acceleration": rounded(joint.max_acceleration / joint.per_file_unit),
+                "max_jerk": rounded(joint.max_jerk / joint.per_file_unit),
             }
             | ({} if joint.thickness_mm is None else {"thickness_mm": joint.thickness_mm})
             for joint in arm.joints
         ],
         "dh": [
             {
-                "theta_deg": _clean(math.degrees(joint.theta_rad)),
-                "d_mm": _clean(joint.d_mm),
-                "a_mm": _clean(joint.a_mm),
-                "alpha_deg": _clean(math.degrees(joint.alpha_rad)),
+                "theta_deg": rounded(math.degrees(joint.theta_rad)),
+                "d_mm": rounded(joint.d_mm),
+                "a_mm": rounded(joint.a_mm),
+                "alpha_deg": rounded(math.degrees(joint.alpha_rad)),
             }
             for joint in arm.joints
         ],
         "coupling": [
             {
                 "joint": names[coupling.joint],
-                "constant_deg": _clean(math.degrees(coupling.constant_rad)),
-                "coefficients": {names[other]: _clean(value) for other, value in coupling.coefficients},
+                "constant_deg": rounded(math.degrees(coupling.constant_rad)),
+                "coefficients": {names[other]: rounded(value) for other, value in coupling.coefficients},
             }
             for coupling in arm.couplings
         ],
         "pen": {"lift_mm": arm.pen.lift_mm, "clearance_mm": arm.pen.clearance_mm},
     }
-
-
-def _clean(value: float) -> float:
-    return round(value, 9) + 0.0  # no "-0.0"

@@ -12,7 +12,7 @@ from planner.checking.between import Sweep
 from planner.checking.check_result import Finding, Place
 from planner.checking.mapping import map_findings, map_trouble, user_to_arm
 from planner.checking.pen import place_of
-from planner.checking.polyline import DenseLines, dense_lines
+from planner.checking.polyline import DenseLines, dense_lines, joined_lines
 from planner.checking.repeats import most_repeated
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
@@ -72,9 +72,7 @@ def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: Floa
 
 
 def _dense(lines: Sequence[FloatArray]) -> DenseLines:
-    points = np.concatenate(lines)
-    joined = np.ones(len(points), dtype=bool)
-    joined[np.cumsum([len(line) for line in lines]) - 1] = False
+    points, joined = joined_lines(lines)
     return _with_bounded_spacing(points, joined, np.arange(len(points)))
 
 

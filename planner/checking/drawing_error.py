@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import FloatArray
-from planner.checking.polyline import DenseLines, dense_lines
+from planner.checking.polyline import DenseLines, dense_lines, joined_lines
 
 _SPACING_MM = 0.05
 _MOST_POINTS = 1_000_000
@@ -33,16 +33,14 @@ def drawing_error(drawn: Sequence[FloatArray], wanted: Sequence[FloatArray]) -> 
     """Compare two lists of lines (n, 2) in mm; infinitely unlike where one of them is empty."""
     if not drawn or not wanted:
         return DrawingErrors(np.inf, np.inf, np.inf)
-    a, b = _dense(drawn), _dense(wanted)
+    a, b = _sampled(drawn), _sampled(wanted)
     distance_mm = np.concatenate((a.distance_mm(b.points_mm), b.distance_mm(a.points_mm)))
     return DrawingErrors(
         float(np.sqrt(np.mean(distance_mm**2))), float(np.percentile(distance_mm, 95)), float(distance_mm.max())
     )
 
 
-def _dense(lines: Sequence[FloatArray]) -> DenseLines:
-    points = np.concatenate(lines)
-    joined = np.ones(len(points), dtype=bool)
-    joined[np.cumsum([len(line) for line in lines]) - 1] = False
+def _sampled(lines: Sequence[FloatArray]) -> DenseLines:
+    """Points evenly spaced along the lines."""
     length_mm = sum(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in lines)
-    return dense_lines(points, joined, max(_SPACING_MM, length_mm / _MOST_POINTS))
+    return dense_lines(*joined_lines(lines), max(_SPACING_MM, length_mm / _MOST_POINTS))

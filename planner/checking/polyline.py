@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,6 +69,14 @@ class DenseLines:
             _to_segments(points_mm, self.points_mm[nearest], self.points_mm[after]),
         )
         return beside
+
+
+def joined_lines(lines: Sequence[FloatArray]) -> tuple[FloatArray, BoolArray]:
+    """Lines (n, 2) end to end, as `dense_lines` takes them: points, and whether each goes on to the next one."""
+    points = np.concatenate(lines)
+    joined = np.ones(len(points), dtype=bool)
+    joined[np.cumsum([len(line) for line in lines]) - 1] = False
+    return points, joined
 
 
 def dense_lines(points_mm: FloatArray, joined: BoolArray, spacing_mm: float) -> DenseLines:

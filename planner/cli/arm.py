@@ -91,10 +91,11 @@ def _configuration(arm: Arm, positions: Sequence[float], frame: str, *, as_json:
 
 def _paper(arm: Arm) -> tuple[dict[str, Any], str]:
     """The keys `reach_mm` and `canvas`; for an arm that has none, None and what is in the way."""
+    from planner.redundancy.arm_model import ArmModel
     from planner.workspace.reach import paper_in_reach
 
     try:
-        paper = paper_in_reach(arm)
+        paper = paper_in_reach(ArmModel(arm))
     except PlanError as error:
         return {"reach_mm": None, "canvas": None}, str(error)
     low, high = paper.reach_mm

@@ -57,7 +57,7 @@ def calibrate(arguments: list[str]) -> int:
     from planner.error_model.calibration.files import read_marks, read_record
     from planner.error_model.calibration.sheets import Sheet
     from planner.error_model.calibration.summary import as_json, lines, warnings
-    from planner.trajectory import written_aside
+    from planner.files import written_aside
 
     arm = load_arm(options.arm)
     sheets = [

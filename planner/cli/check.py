@@ -52,7 +52,8 @@ def check(arguments: list[str]) -> int:
     from planner.arms.arm_file import load_arm
     from planner.checking.check import check_trajectory
     from planner.drawing.svg import read_drawing
-    from planner.trajectory import read_trajectory, written_aside
+    from planner.files import written_aside
+    from planner.trajectory import read_trajectory
 
     trajectory = read_trajectory(options.trajectory)
     arm = load_arm(options.arm or trajectory.arm)

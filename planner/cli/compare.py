@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from planner.arrays import FloatArray
     from planner.comparison.compare import Comparison
     from planner.comparison.targets import Targets
+    from planner.redundancy.arm_model import ArmModel
 
 _DESCRIPTION = """\
 Compare the methods of inverse kinematics on the same targets: the documented damped least squares (dls), the same
@@ -60,17 +61,18 @@ def compare(arguments: list[str]) -> int:
     from planner.arms.arm_file import load_arm
     from planner.comparison.compare import compare as compare_methods
     from planner.comparison.compare import default_start
+    from planner.redundancy.arm_model import ArmModel
 
-    arm = load_arm(settings.arm)
-    targets, warnings = _targets(options, arm, settings)
-    start = _start(arm, options.start) if options.start else default_start(arm, targets.kind)
+    model = ArmModel(load_arm(settings.arm))
+    targets, warnings = _targets(options, model, settings)
+    start = _start(model.arm, options.start) if options.start else default_start(model, targets.kind)
     with progress(quiet=options.quiet) as show, interrupts_remembered() as raise_if_interrupted:
 
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
             show(stage, done, total)
 
-        comparison = compare_methods(arm, targets, start, settings, report)
+        comparison = compare_methods(model, targets, start, settings, report)
     print_warnings(warnings)
     _print(comparison, options.json, options.plot)
     if options.plot is not None:
@@ -81,7 +83,7 @@ def compare(arguments: list[str]) -> int:
     return 0
 
 
-def _targets(options: argparse.Namespace, arm: Arm, settings: PlanSettings) -> tuple[Targets, list[str]]:
+def _targets(options: argparse.Namespace, model: ArmModel, settings: PlanSettings) -> tuple[Targets, list[str]]:
     import numpy as np
 
     from planner.comparison.targets import random_targets, single_targets, targets_along
@@ -90,15 +92,15 @@ def _targets(options: argparse.Namespace, arm: Arm, settings: PlanSettings) -> t
     if options.target:
         return single_targets(np.array([(*place, 0.0)[:3] for place in options.target])), []
     if options.random is not None:
-        return random_targets(arm, options.random, options.seed or 0), []
-    strokes, warnings = placed_strokes(options.drawing, arm, settings)
+        return random_targets(model.kinematics, options.random, options.seed or 0), []
+    strokes, warnings = placed_strokes(options.drawing, model, settings)
     return targets_along(strokes), warnings
 
 
 def _start(arm: Arm, positions: Sequence[float]) -> FloatArray:
     """Errors: UsageError for a configuration that breaks a coupling: no method would begin there."""
     start = all_joints(arm, positions, "--start")
-    coupled = arm.complete(start[list(arm.independent_joints)])
+    coupled = arm.complete(arm.independent_of(start))
     for joint, value, wanted in zip(arm.joints, start.tolist(), coupled.tolist(), strict=True):
         if abs(value - wanted) > _COUPLED * joint.per_file_unit:
             raise UsageError(
@@ -111,7 +113,7 @@ def _start(arm: Arm, positions: Sequence[float]) -> FloatArray:
 def _print(comparison: Comparison, target: Path | None, picture: Path | None) -> None:
     from planner.comparison.description import comparison_description
     from planner.comparison.table import convergence_lines, table_lines
-    from planner.trajectory import written_aside
+    from planner.files import written_aside
 
     if target is not None:
         text = json.dumps(comparison_description(comparison), indent=2, allow_nan=False)

@@ -246,10 +246,11 @@ def _on_paper(
 
 def _paper_of(arm: Arm) -> tuple[FloatArray | None, tuple[float, float] | None]:
     """Canvas corners and reach; None for an arm without: a trajectory from elsewhere can be shown all the same."""
+    from planner.redundancy.arm_model import ArmModel
     from planner.workspace.reach import paper_in_reach
 
     try:
-        paper = paper_in_reach(arm)
+        paper = paper_in_reach(ArmModel(arm))
     except PlanError:
         return None, None
     return paper.corners_arm_mm, paper.reach_mm
@@ -263,19 +264,21 @@ def _tip_mm(trajectory: Trajectory, arm: Arm) -> FloatArray:
 
 def _workspace(arm: Arm, look: Look) -> Figure:
     from planner.plots.workspace import plot_workspace
+    from planner.redundancy.arm_model import ArmModel
     from planner.settings import CanvasKind
     from planner.workspace.canvas import canvas_of
     from planner.workspace.paper_map import paper_map
     from planner.workspace.reach import paper_in_reach
 
-    reach_mm = paper_in_reach(arm).reach_mm
+    model = ArmModel(arm)
+    reach_mm = paper_in_reach(model).reach_mm
     canvases = {}
     for kind in CanvasKind:
         try:
-            canvases[kind] = canvas_of(arm, kind, arm.pen.lift_mm).corners_arm_mm
+            canvases[kind] = canvas_of(model, kind, arm.pen.lift_mm).corners_arm_mm
         except PlanError:  # a narrow ring has no documented canvas
             continue
-    return plot_workspace(arm.name, paper_map(arm), canvases, reach_mm, look)
+    return plot_workspace(arm.name, paper_map(model), canvases, reach_mm, look)
 
 
 def _film(trajectory: Trajectory, arm: Arm, options: argparse.Namespace, look: Look) -> None:

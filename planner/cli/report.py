@@ -29,11 +29,12 @@ def write_report_of(planned: Plan, settings: PlanSettings, arguments: Sequence[s
     """Judge the plan and write the page about it; the page. Errors: OutputError."""
     from planner.arms.arm_file import load_arm
     from planner.checking.check import check_trajectory
+    from planner.redundancy.arm_model import ArmModel
     from planner.report.report import Planned, write_report
     from planner.workspace.reach import paper_in_reach
 
-    arm = load_arm(settings.arm)
-    check_result = check_trajectory(planned.trajectory, arm, planned.drawing, settings.tolerance_mm)
+    model = ArmModel(load_arm(settings.arm))
+    check_result = check_trajectory(planned.trajectory, model.arm, planned.drawing, settings.tolerance_mm)
     page = folder / _PAGE
     write_report(
         Planned(
@@ -41,10 +42,10 @@ def write_report_of(planned: Plan, settings: PlanSettings, arguments: Sequence[s
             settings,
             planned.summary,
             planned.trajectory,
-            arm,
+            model,
             planned.drawing,
             check_result,
-            paper_in_reach(arm).reach_mm,
+            paper_in_reach(model).reach_mm,
         ),
         page,
     )

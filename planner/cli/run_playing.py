@@ -22,9 +22,10 @@ from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.cli.controls import KEYS, Controls, controls
 from planner.cli.run_journal import RunJournal
-from planner.cli.terminal import Show, print_note, print_warnings, progress
+from planner.cli.terminal import print_note, print_warnings, progress
 from planner.error_model.random_arm import random_arm
 from planner.errors import HardwareError, UsageError
+from planner.progress import Report
 
 if TYPE_CHECKING:
     from hardware.simulation.mujoco_arm import MujocoArm
@@ -125,7 +126,7 @@ def _announced(options: argparse.Namespace, program: Program, arm: Arm) -> str:
 class _Display(Observer):
     """Shows the keys once, where there are any, and progress a few times a second. wishes: None to leave keys out."""
 
-    def __init__(self, show: Show, driver: Driver, rate_hz: float, last_stroke: int, wishes: Controls | None) -> None:
+    def __init__(self, show: Report, driver: Driver, rate_hz: float, last_stroke: int, wishes: Controls | None) -> None:
         self._show, self._driver, self._last_stroke, self._wishes = show, driver, last_stroke, wishes
         self._every = max(round(rate_hz / _REPORTS_A_SECOND), 1)
         self._calls = 0

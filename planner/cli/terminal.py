@@ -7,19 +7,17 @@ import io
 import os
 import stat
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from planner.errors import OutputError
 from planner.files import is_standard_output
+from planner.progress import Report
 
 if TYPE_CHECKING:
     from rich.progress import TaskID
-
-Show = Callable[[str, int, int], None]
-"""show(label, done, total): how far something has come."""
 
 
 def print_lines(lines: Iterable[str]) -> None:
@@ -74,7 +72,7 @@ def _print_aside(line: str) -> None:
 
 
 @contextmanager
-def progress(*, quiet: bool, single: bool = False) -> Iterator[Show]:
+def progress(*, quiet: bool, single: bool = False) -> Iterator[Report]:
     """Bars while standard error is a terminal, else nothing.
 
     A bar for each label, with the time that it may take by the pace so far; or with `single` one bar whose label

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,11 +18,10 @@ from planner.comparison.targets import TargetKind, Targets
 from planner.comparison.worked_example import documented_start
 from planner.errors import PlanError, PlannerError, TargetBeyondReach
 from planner.inverse_kinematics.dls import FOR_DRAWING
-from planner.inverse_kinematics.stroke_configurations import home_of
-from planner.kinematics.chain import kinematics_of
+from planner.inverse_kinematics.references import home_of
+from planner.progress import Report
+from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
-
-Report = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,35 +56,41 @@ class Comparison:
     convergences: tuple[Convergence, ...]
 
 
-def default_start(arm: Arm, kind: TargetKind) -> FloatArray:
+def default_start(model: ArmModel, kind: TargetKind) -> FloatArray:
     """(n_joints,) for single and random targets the start of the documents on their arm; else the arm's home, and the
     middle of the joints' ranges if it has none."""
+    arm = model.arm
     documented = documented_start(arm) if kind is not TargetKind.DRAWING else None
     if documented is not None:
         return documented
     try:
-        return arm.complete(home_of(arm))
+        return arm.complete(home_of(model))
     except PlanError:
-        return arm.complete(kinematics_of(arm).independent_of((arm.minimum + arm.maximum) / 2))
+        return arm.complete(arm.independent_of((arm.minimum + arm.maximum) / 2))
 
 
-def compare(arm: Arm, targets: Targets, start: FloatArray, settings: PlanSettings, report: Report) -> Comparison:
+def compare(model: ArmModel, targets: Targets, start: FloatArray, settings: PlanSettings, report: Report) -> Comparison:
     """Every method on the same targets from joints (n_joints,). A method that the arm has not is a result that says
     why. Errors: TargetBeyondReach where a single target is."""
+    arm = model.arm
     results = []
     times: dict[str, StrokeTimes] = {}
     for index, method in enumerate(METHODS):
         report("comparing", index, len(METHODS))
         result = _result(method, arm, targets, start, settings)
         if targets.strokes and result.measured is not None and method.drawn_by is not None:
-            times[method.name] = stroke_times(arm, targets.strokes, replace(settings, method=method.drawn_by))
+            times[method.name] = stroke_times(model, targets.strokes, replace(settings, method=method.drawn_by))
         results.append(result)
     report("comparing", len(METHODS), len(METHODS))
     if targets.kind is not TargetKind.SINGLE:
         return Comparison(arm, targets, start, _with_times(results, times), ())
     _require_reach(arm, targets, results)
     return Comparison(
-        arm, targets, start, tuple(results), tuple(convergence(arm, target, start) for target in targets.tips_mm)
+        arm,
+        targets,
+        start,
+        tuple(results),
+        tuple(convergence(model.kinematics, target, start) for target in targets.tips_mm),
     )
 
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.comparison.worked_example import ITERATIONS, TARGET_CM, Row, documented_start
-from planner.inverse_kinematics.dls import DOCUMENTED, MM_PER_CM, DlsStep, iterate
+from planner.inverse_kinematics.dls import DOCUMENTED, MM_PER_CM, DlsSolver, DlsStep
+from planner.kinematics.chain import Kinematics
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -23,14 +23,14 @@ class Convergence:
     printed: tuple[Row, ...]
 
 
-def convergence(arm: Arm, target_mm: FloatArray, start: FloatArray) -> Convergence:
+def convergence(kinematics: Kinematics, target_mm: FloatArray, start: FloatArray) -> Convergence:
     """From joints (n_joints,) to a tip (3,)."""
     steps: list[DlsStep] = []
-    for state in iterate(arm, start, target_mm, DOCUMENTED.lambda_squared):
+    for state in DlsSolver(kinematics).iterate(start, target_mm, DOCUMENTED.lambda_squared):
         steps.append(state)
         if DOCUMENTED.met_by(state) or len(steps) > DOCUMENTED.most_iterations:
             break
-    documented = documented_start(arm)
+    documented = documented_start(kinematics.arm)
     is_printed = (
         documented is not None
         and np.allclose(start, documented, rtol=0, atol=1e-9)

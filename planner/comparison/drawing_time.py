@@ -8,10 +8,11 @@ from itertools import chain, islice
 
 import numpy as np
 
-from planner.arms.arm import Arm
 from planner.arrays import FloatArray
-from planner.execution.work_chunks import PlanContext, pieces_of, stroke_chunks, timed_strokes
+from planner.execution.context import PlanContext
+from planner.execution.work_chunks import pieces_of, stroke_chunks, timed_strokes
 from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
+from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
 
 
@@ -24,9 +25,9 @@ class StrokeTimes:
     infeasible_paths: Sequence[InfeasiblePath]
 
 
-def stroke_times(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> StrokeTimes:
+def stroke_times(model: ArmModel, strokes: Sequence[FloatArray], settings: PlanSettings) -> StrokeTimes:
     """Strokes (n, 2) in arm mm by the method of the settings, on the same pen paths whatever the method."""
-    context = PlanContext.of(arm, settings)
+    context = PlanContext(model, settings)
     pieces = pieces_of(context, strokes)
     chunks = stroke_chunks(context, list(chain.from_iterable(pieces)))
     results = chain.from_iterable(map(timed_strokes, chunks))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import process_time
 
 import numpy as np
@@ -13,6 +13,7 @@ from planner.arrays import BoolArray, FloatArray
 from planner.comparison.methods import ComparedMethod, Solve
 from planner.comparison.targets import Targets
 from planner.inverse_kinematics.result import Solutions
+from planner.redundancy.arm_model import ArmModel
 from planner.settings import ConfigurationWeights
 
 _MOST_RUNS, _ENOUGH_S = 20, 0.2
@@ -45,9 +46,8 @@ def measure(
     clock: Callable[[], float] = process_time,
 ) -> Measured:
     """Solve for all targets, forwards and backwards. Errors: PlannerError where the arm has no such method."""
-    unknown = replace(arm)  # models are kept by an arm's identity: of this one nothing has been built yet
     began = clock()
-    solve = method.build(unknown, weights)
+    solve = method.build(ArmModel(arm), weights)  # of which nothing has been built yet
     solve(targets.first(), start)
     cold_s = clock() - began
     found, warm_s = _timed(solve, targets, start, clock)

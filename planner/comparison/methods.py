@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray
 from planner.comparison.targets import TargetKind, Targets
 from planner.inverse_kinematics import dls, nlp
-from planner.inverse_kinematics.closed_forms import closed_form_configurations
+from planner.inverse_kinematics.closed_forms import closed_form_of
 from planner.inverse_kinematics.result import Solutions
-from planner.kinematics.chain import kinematics_of
+from planner.kinematics.chain import Kinematics
 from planner.kinematics.projection import project
-from planner.redundancy.configuration_map import branch_references, configuration_branches
+from planner.redundancy.arm_model import ArmModel
+from planner.redundancy.configuration_map import branch_references
 from planner.settings import ConfigurationWeights, Method
 
 Solve = Callable[[Targets, FloatArray], Solutions]
@@ -32,52 +32,52 @@ class ComparedMethod:
 
     name: str
     title: str
-    build: Callable[[Arm, ConfigurationWeights], Solve]
+    build: Callable[[ArmModel, ConfigurationWeights], Solve]
     tolerance_mm: float
     infeasible_path: str
     iterates: bool
     drawn_by: Method | None
 
 
-def _by_dls(settings: dls.DlsSettings) -> Callable[[Arm, ConfigurationWeights], Solve]:
-    def build(arm: Arm, weights: ConfigurationWeights) -> Solve:
+def _by_dls(settings: dls.DlsSettings) -> Callable[[ArmModel, ConfigurationWeights], Solve]:
+    def build(model: ArmModel, weights: ConfigurationWeights) -> Solve:
+        solver = dls.DlsSolver(model.kinematics)
         return lambda targets, start: _course_by_course(
-            targets, lambda tips_mm: dls.solve_sequence(arm, tips_mm, start, settings)
+            targets, lambda tips_mm: solver.solve_sequence(tips_mm, start, settings)
         )
 
     return build
 
 
-def _by_nlp(arm: Arm, weights: ConfigurationWeights) -> Solve:
-    nlp.nlp_solver(arm)
-    independent_of = kinematics_of(arm).independent_of
+def _by_nlp(model: ArmModel, weights: ConfigurationWeights) -> Solve:
+    solver, independent_of = nlp.NlpSolver(model.kinematics), model.arm.independent_of
     return lambda targets, start: _course_by_course(
         targets,
-        lambda tips_mm: nlp.solve_sequence(
-            arm, tips_mm, independent_of(start), settle=targets.kind is TargetKind.DRAWING
+        lambda tips_mm: solver.solve_sequence(
+            tips_mm, independent_of(start), settle=targets.kind is TargetKind.DRAWING
         ),
     )
 
 
-def _by_closed_form(arm: Arm, weights: ConfigurationWeights) -> Solve:
-    references = closed_form_configurations(arm)
+def _by_closed_form(model: ArmModel, weights: ConfigurationWeights) -> Solve:
+    closed_form = closed_form_of(model.arm)
 
     def solve(targets: Targets, start: FloatArray) -> Solutions:
-        configurations = references(arm, targets.tips_mm)
+        configurations = closed_form(targets.tips_mm)
         solved: BoolArray = np.all(np.isfinite(configurations), axis=1)
-        return _solutions(arm, configurations, solved, targets.tips_mm)
+        return _solutions(model.kinematics, configurations, solved, targets.tips_mm)
 
     return solve
 
 
-def _by_path(arm: Arm, weights: ConfigurationWeights) -> Solve:
-    branches = configuration_branches(arm, weights)
+def _by_path(model: ArmModel, weights: ConfigurationWeights) -> Solve:
+    kinematics, branches = model.kinematics, model.branches(weights)
 
     def solve(targets: Targets, start: FloatArray) -> Solutions:
         tips_mm = targets.tips_mm
         firsts = targets.firsts if targets.kind is TargetKind.DRAWING else np.arange(len(tips_mm))
         return _solutions(
-            arm, *project(kinematics_of(arm), branch_references(branches, tips_mm, firsts), tips_mm), tips_mm
+            kinematics, *project(kinematics, branch_references(branches, tips_mm, firsts), tips_mm), tips_mm
         )
 
     return solve
@@ -93,9 +93,9 @@ def _course_by_course(targets: Targets, solve_course: Callable[[FloatArray], Sol
     )
 
 
-def _solutions(arm: Arm, configurations: FloatArray, solved: BoolArray, tips_mm: FloatArray) -> Solutions:
+def _solutions(kinematics: Kinematics, configurations: FloatArray, solved: BoolArray, tips_mm: FloatArray) -> Solutions:
     """Of methods that do not iterate; errors are NaN where there is no configuration at all."""
-    error: FloatArray = np.linalg.norm(kinematics_of(arm).tip_mm(configurations) - tips_mm, axis=1)
+    error: FloatArray = np.linalg.norm(kinematics.tip_mm(configurations) - tips_mm, axis=1)
     return Solutions(configurations, solved, np.zeros(len(configurations), dtype=np.int64), error)
 
 

@@ -8,11 +8,11 @@ from enum import StrEnum
 
 import numpy as np
 
-from planner.arms.arm import Arm, PenHold
+from planner.arms.arm import PenHold
 from planner.arrays import FloatArray, IntArray
 from planner.errors import PlanError
-from planner.inverse_kinematics.stroke_configurations import TARGET_SPACING_MM
-from planner.kinematics.chain import kinematics_of
+from planner.inverse_kinematics.references import TARGET_SPACING_MM
+from planner.kinematics.chain import Kinematics
 from planner.kinematics.projection import project
 from planner.ragged import starts_of
 from planner.redundancy.configuration_tests import usable_configurations
@@ -59,11 +59,11 @@ def single_targets(tips_mm: FloatArray) -> Targets:
     return Targets(TargetKind.SINGLE, tips_mm, np.arange(len(tips_mm)), np.zeros(len(tips_mm)))
 
 
-def random_targets(arm: Arm, count: int, seed: int) -> Targets:
+def random_targets(kinematics: Kinematics, count: int, seed: int) -> Targets:
     """Places of the paper in front of the arm, each reached by a usable configuration that was drawn at random: within
     limits, clear of singularities, links above the paper. Errors: PlanError where hardly any is found."""
     random = np.random.default_rng(seed)
-    kinematics = kinematics_of(arm)
+    arm = kinematics.arm
     low, high = kinematics.independent_of(arm.minimum), kinematics.independent_of(arm.maximum)
     found = np.empty((0, 3))
     for _ in range(_MOST_DRAWS):

@@ -13,16 +13,9 @@ from planner.errors import PlanError
 POINT_LIMIT = 5_000_000
 
 
-def flatten(outline: Outline, user_to_arm: FloatArray, tolerance_mm: float) -> FloatArray:
-    """The outline as a polyline (n, 2) in the frame that `user_to_arm` (2, 3) leads to; a tap gives (1, 2).
-
-    Curve and polyline are nowhere further apart than `tolerance_mm`.
-    """
-    return flatten_all((outline,), user_to_arm, tolerance_mm)[0]
-
-
 def flatten_all(outlines: Sequence[Outline], user_to_arm: FloatArray, tolerance_mm: float) -> list[FloatArray]:
-    """`flatten` for many outlines at once.
+    """Outlines as polylines (n, 2) in the frame that `user_to_arm` (2, 3) leads to; a tap gives (1, 2). Curve and
+    polyline are nowhere further apart than `tolerance_mm`.
 
     A cubic with second differences D splits at equal parameters into sqrt(6 |D| / (8 tolerance)) chords, since its
     second derivative is at most 6 |D| and a chord over dt misses it by at most dt^2 / 8 of that. Errors: PlanError

@@ -7,52 +7,20 @@ work is bounded by counts, never by a clock, so that the same strokes always giv
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from planner.arrays import FloatArray, IntArray
 from planner.drawing.join import is_closed
+from planner.drawing.metric import STRAIGHT, Metric
 from planner.drawing.tour import improve
-
-Embedding = Callable[[FloatArray], FloatArray]
 
 _FIRST_NEIGHBOURS = 8
 _ROUNDS = 3
 """Searches for a tour, each with closed strokes begun anew where the one before passes them best: none makes the way
 longer, and there is no end that has to be reached."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Metric:
-    """The cost of travelling between two points: the p-norm (2 or inf) between their images under `embed`, raised to
-    an exponent.
-
-    embed: points (n, 2) to vectors (n, k). exponent: 1 for lengths; 1/3 for the times of jerk-limited moves, among
-    which one long move is sooner done than several short ones.
-    """
-
-    embed: Embedding
-    p: float = 2.0
-    exponent: float = 1.0
-
-    def distance(self, one: FloatArray, other: FloatArray) -> FloatArray:
-        """Costs (n,) of the differences of embedded points (n, k)."""
-        difference = np.abs(one - other)
-        if np.isinf(self.p):
-            norm: FloatArray = difference.max(axis=-1)
-        else:
-            norm = np.sqrt(np.sum(difference * difference, axis=-1))
-        return norm if self.exponent == 1.0 else norm**self.exponent
-
-
-def _unchanged(points: FloatArray) -> FloatArray:
-    return points
-
-
-STRAIGHT = Metric(_unchanged)
 
 
 def travel(strokes: Sequence[FloatArray], start_xy: FloatArray, metric: Metric = STRAIGHT) -> float:
@@ -81,7 +49,7 @@ def ordered(
         return [], True
     candidates = _Candidates(strokes, metric)
     start = metric.embed(np.asarray(start_xy, dtype=np.float64).reshape(1, 2))[0]
-    tour, entries, exits = _greedy(candidates, start, metric.p)
+    tour, entries, exits = _greedy(candidates, start)
     is_finished = True
     for _ in range(_ROUNDS):
         tour, is_reversed, to_the_end = improve(
@@ -120,7 +88,7 @@ class _Candidates:
         return candidate if self.is_closed[owner] else 2 * int(self.first[owner]) + 1 - candidate
 
 
-def _greedy(candidates: _Candidates, start: FloatArray, p: float) -> tuple[IntArray, IntArray, IntArray]:
+def _greedy(candidates: _Candidates, start: FloatArray) -> tuple[IntArray, IntArray, IntArray]:
     """Always on to the nearest stroke left: the order, and for each stroke its candidates of entry and exit."""
     n_strokes = len(candidates.is_closed)
     tour = np.empty(n_strokes, dtype=np.int64)
@@ -134,7 +102,7 @@ def _greedy(candidates: _Candidates, start: FloatArray, p: float) -> tuple[IntAr
         nearest, k = -1, _FIRST_NEIGHBOURS
         while nearest < 0:
             k = min(k, len(alive))
-            found = np.atleast_1d(tree.query(place, k=k, p=p)[1])
+            found = np.atleast_1d(tree.query(place, k=k)[1])
             usable = found[is_left[candidates.owner[alive[found]]]]
             if len(usable):
                 nearest = int(alive[usable[0]])

@@ -40,16 +40,9 @@ def has_foreign_characters(data: str) -> bool:
     return _FOREIGN.search(data) is not None
 
 
-def without_arcs(data: str) -> str:
-    """The same path in absolute M, L, C, Q and Z.
-
-    After an error in the data, what stands before it is kept (SVG 1.1, section F.2).
-    """
-    return "".join(commands(data))
-
-
 def commands(data: str) -> Iterator[str]:
-    """`without_arcs` bit by bit, as arcs may multiply what there is; data without arcs as it stands."""
+    """The same path in absolute M, L, C, Q and Z, bit by bit, as arcs may multiply what there is; data without arcs as
+    it stands. After an error in the data, what stands before it is kept (SVG 1.1, section F.2)."""
     if "A" not in data and "a" not in data:
         return iter((data,))
     return _Rewriter(data).commands()

@@ -7,12 +7,11 @@ and swaps entries for exits, which leaves all travel inside the piece as it was.
 
 from __future__ import annotations
 
-from typing import Protocol
-
 import numpy as np
 from scipy.spatial import cKDTree
 
 from planner.arrays import BoolArray, FloatArray, IntArray
+from planner.drawing.metric import Metric
 
 _NEIGHBOURS = 8
 _LONGEST_SEGMENT = 3
@@ -22,17 +21,8 @@ _WORK_LIMIT = 400_000_000
 _GAIN = 1e-9
 
 
-class Norm(Protocol):
-    """A distance between embedded points."""
-
-    @property
-    def p(self) -> float: ...
-
-    def distance(self, one: FloatArray, other: FloatArray) -> FloatArray: ...
-
-
 def improve(
-    start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, norm: Norm
+    start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, metric: Metric
 ) -> tuple[IntArray, BoolArray, bool]:
     """A tour no longer than `tour`, which strokes it runs the other way, and whether the search came to its end, where
     no move is left that gains, rather than to the limit of its rounds or its work.
@@ -42,7 +32,7 @@ def improve(
     n = len(tour)
     if n < 2:
         return tour, np.zeros(n, dtype=np.bool_), True
-    search = _Search(start, entries, exits, tour, norm)
+    search = _Search(start, entries, exits, tour, metric)
     is_finished = search.run()
     found = search.tour[1:]
     is_reversed = np.zeros(n, dtype=np.bool_)
@@ -53,9 +43,11 @@ def improve(
 class _Search:
     """Stroke n is the start, both its nodes in one place; it always stands first."""
 
-    def __init__(self, start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, norm: Norm) -> None:
+    def __init__(
+        self, start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, metric: Metric
+    ) -> None:
         self.n = len(tour)
-        self.norm = norm
+        self.metric = metric
         self.nodes: FloatArray = np.stack([np.vstack([entries, start]), np.vstack([exits, start])], axis=1)
         self.nodes = self.nodes.reshape(2 * self.n + 2, -1)
         self.tour: IntArray = np.concatenate([[2 * self.n], 2 * tour])
@@ -64,7 +56,7 @@ class _Search:
         k = min(_NEIGHBOURS + 2, len(self.nodes))
         scale = float(np.ptp(self.nodes, axis=0).max())
         self.least_gain = _GAIN * scale
-        near = cKDTree(self.nodes).query(self.nodes, k=k, p=norm.p)[1]
+        near = cKDTree(self.nodes).query(self.nodes, k=k)[1]
         rows = np.repeat(np.arange(len(self.nodes)), k)
         columns = near.ravel()
         is_other = rows // 2 != columns // 2
@@ -94,7 +86,7 @@ class _Search:
 
     def _length(self, one: IntArray, other: IntArray) -> FloatArray:
         """Travel between nodes; nothing where `other` is -1, the free end."""
-        distance: FloatArray = self.norm.distance(self.nodes[one], self.nodes[other])
+        distance: FloatArray = self.metric.distance(self.nodes[one], self.nodes[other])
         distance[other < 0] = 0.0
         return distance
 

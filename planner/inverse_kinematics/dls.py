@@ -10,15 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import lru_cache
 
 import casadi
 import numpy as np
 
-from planner.arms.arm import Arm, JointKind, PenHold
+from planner.arms.arm import JointKind, PenHold
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.result import Solutions
-from planner.kinematics.chain import kinematics_of
+from planner.kinematics.chain import Kinematics
 from planner.kinematics.compiled import CompiledFunction
 
 MM_PER_CM = 10.0
@@ -62,49 +61,53 @@ class DlsStep:
     step: FloatArray
 
 
-def iterate(arm: Arm, start: FloatArray, target_mm: FloatArray, lambda_squared: float) -> Iterator[DlsStep]:
-    """Iterations without end from joints (n_joints,) towards a tip (3,): the caller decides when to stop."""
-    step = _dls_step(arm)
-    matrix, constant = arm.coupling_matrix
-    independent = list(arm.independent_joints)
-    joints, target = np.array(start, dtype=np.float64), np.asarray(target_mm, dtype=np.float64)
-    damping = np.array([[lambda_squared]])
-    while True:
-        (error,), (tip,), (change,), ((tilt,),) = step(joints[None], target[None], damping)
-        yield DlsStep(joints, tip, error, float(tilt), change)
-        joints = matrix @ (joints + change)[independent] + constant
+class DlsSolver:
+    """The method for one arm. The step is built once."""
+
+    def __init__(self, kinematics: Kinematics) -> None:
+        self._arm = kinematics.arm
+        self._step = _dls_step(kinematics)
+
+    def iterate(self, start: FloatArray, target_mm: FloatArray, lambda_squared: float) -> Iterator[DlsStep]:
+        """Iterations without end from joints (n_joints,) towards a tip (3,): the caller decides when to stop."""
+        joints, target = np.array(start, dtype=np.float64), np.asarray(target_mm, dtype=np.float64)
+        damping = np.array([[lambda_squared]])
+        matrix, constant = self._arm.coupling_matrix
+        while True:
+            (error,), (tip,), (change,), ((tilt,),) = self._step(joints[None], target[None], damping)
+            yield DlsStep(joints, tip, error, float(tilt), change)
+            joints = matrix @ self._arm.independent_of(joints + change) + constant
+
+    def solve_sequence(self, targets_mm: FloatArray, start: FloatArray, settings: DlsSettings) -> Solutions:
+        """Targets (n, 3) one after the other, each started from the configuration of the one before.
+
+        start: (n_joints,), which also holds the coupling.
+        """
+        n_targets = len(targets_mm)
+        configurations = np.empty((n_targets, len(self._arm.independent_joints)))
+        converged = np.zeros(n_targets, dtype=bool)
+        iterations = np.zeros(n_targets, dtype=np.int64)
+        error_mm = np.empty(n_targets)
+        joints = np.asarray(start)
+        for index, target in enumerate(targets_mm):
+            for count, state in enumerate(self.iterate(joints, target, settings.lambda_squared)):
+                joints = state.joints
+                converged[index] = settings.met_by(state)
+                if converged[index] or count >= settings.most_iterations:
+                    break
+            iterations[index] = count
+            error_mm[index] = float(np.linalg.norm(state.error_mm))
+            configurations[index] = self._arm.independent_of(joints)
+        return Solutions(configurations, converged, iterations, error_mm)
 
 
-def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, settings: DlsSettings) -> Solutions:
-    """Targets (n, 3) one after the other, each started from the configuration of the one before.
-
-    start: (n_joints,), which also holds the coupling.
-    """
-    n_targets = len(targets_mm)
-    configurations = np.empty((n_targets, len(arm.independent_joints)))
-    converged = np.zeros(n_targets, dtype=bool)
-    iterations = np.zeros(n_targets, dtype=np.int64)
-    error_mm = np.empty(n_targets)
-    joints = np.asarray(start)
-    for index, target in enumerate(targets_mm):
-        for count, state in enumerate(iterate(arm, joints, target, settings.lambda_squared)):
-            joints = state.joints
-            converged[index] = settings.met_by(state)
-            if converged[index] or count >= settings.most_iterations:
-                break
-        iterations[index] = count
-        error_mm[index] = float(np.linalg.norm(state.error_mm))
-        configurations[index] = joints[list(arm.independent_joints)]
-    return Solutions(configurations, converged, iterations, error_mm)
-
-
-@lru_cache(maxsize=16)
-def _dls_step(arm: Arm) -> CompiledFunction:
-    """(joints, target in mm, lambda^2) to (error in mm, tip in mm, step)."""
+def _dls_step(kinematics: Kinematics) -> CompiledFunction:
+    """(joints, target in mm, lambda^2) to (error in mm, tip in mm, step, sine of the tilt)."""
+    arm = kinematics.arm
     joints = casadi.SX.sym("q", arm.n_joints)
     target = casadi.SX.sym("target_mm", 3)
     damping = casadi.SX.sym("lambda_squared")
-    tip, axis, jacobian = kinematics_of(arm).symbolic_jacobian(joints)
+    tip, axis, jacobian = kinematics.symbolic_jacobian(joints)
     points = arm.pen.hold is PenHold.TOOL_AXIS
     to_cm = casadi.diag(casadi.DM([1 / MM_PER_CM] * 3 + [_LEVER_CM if points else 1.0] * 3))
     turn = casadi.cross(axis, casadi.DM([0, 0, -1])) if points else casadi.SX.zeros(3)

@@ -15,6 +15,7 @@ import numpy as np
 from planner.arms.arm import JointKind, PenHold
 from planner.arrays import FloatArray
 from planner.kinematics.chain import Kinematics
+from planner.kinematics.limits import within_limits
 
 _DRAWN = 20_000
 _GUESSES = 20
@@ -69,8 +70,7 @@ class Guesses:
         configurations = np.random.default_rng(20221101).uniform(
             self._low, self._high, (_DRAWN, kinematics.n_independent)
         )
-        joints = arm.complete(configurations)
-        kept = ((joints >= arm.minimum) & (joints <= arm.maximum)).all(axis=1)
+        kept = within_limits(arm, arm.complete(configurations), slack=0.0)
         if arm.pen.hold is PenHold.TOOL_AXIS:
             kept &= kinematics.tool_axis(configurations)[:, 2] < 0
         configurations = configurations[kept]

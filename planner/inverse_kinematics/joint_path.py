@@ -2,44 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.linalg import solve_banded
 
-from planner.arrays import BoolArray, FloatArray, IntArray
+from planner.arrays import FloatArray, IntArray
 from planner.ragged import starts_of, within
-from planner.spline import evaluate, evaluate_at, first_controls, subdivided, weights
+from planner.spline import weights
+from planner.spline_paths import DEGREE, SplinePaths
 
-DEGREE = 5
 
+class JointPaths(SplinePaths):
+    """Joint paths before timing: positions are configurations (n_joints,) in rad or mm. Splines reproduce linear
+    relations, so couplings hold between knots as they do at them."""
 
-@dataclass(frozen=True, eq=False, slots=True)
-class JointPaths:
-    """Joint paths of many strokes, laid end to end, before timing.
-
-    n_cells: (n_paths,); controls: (total cells + 5 n_paths, n_joints) in rad or mm. Splines reproduce linear
-    relations, so couplings hold between knots as they do at them.
-    """
-
-    n_cells: IntArray
-    controls: FloatArray
-
-    def positions(self, fractions: FloatArray, derivative: int = 0) -> FloatArray:
-        """(total cells, n_fractions, n_joints) positions or derivatives by sigma at fractions of every cell."""
-        return evaluate(self.controls, first_controls(self.n_cells, DEGREE), fractions, DEGREE, derivative)
-
-    def subdivided(self) -> JointPaths:
-        """The same paths with every cell cut in two, sigma counting the new cells."""
-        return JointPaths(2 * self.n_cells, subdivided(self.controls, self.n_cells, DEGREE))
-
-    def subset(self, chosen: BoolArray) -> JointPaths:
-        """Only the paths of the mask (n_paths,)."""
-        return JointPaths(self.n_cells[chosen], self.controls[np.repeat(chosen, self.n_cells + DEGREE)])
-
-    def at(self, cells: IntArray, fractions: FloatArray, derivative: int = 0) -> FloatArray:
-        """(n, n_joints) at one fraction in each of the named cells (counted over all paths)."""
-        return evaluate_at(self.controls, first_controls(self.n_cells, DEGREE)[cells], fractions, DEGREE, derivative)
+    __slots__ = ()
 
 
 def interpolate(n_cells: IntArray, knots: FloatArray) -> JointPaths:

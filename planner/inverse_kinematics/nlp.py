@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from functools import lru_cache
 
 import casadi
 import numpy as np
 
-from planner.arms.arm import Arm, PenHold
+from planner.arms.arm import PenHold
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.guesses import Guesses
 from planner.inverse_kinematics.result import Solutions
-from planner.kinematics.chain import kinematics_of
+from planner.kinematics.chain import Kinematics
 from planner.kinematics.projection import joint_scale
 
 _CENTRING = 1e-3
@@ -35,9 +34,9 @@ _ROOM = 5e-3
 class NlpSolver:
     """The parametric problem of one arm: SQP first, an interior-point method where that fails, then other starts."""
 
-    def __init__(self, arm: Arm) -> None:
-        self.arm = arm
-        self.kinematics = kinematics_of(arm)
+    def __init__(self, kinematics: Kinematics) -> None:
+        arm = kinematics.arm
+        self.arm, self.kinematics = arm, kinematics
         independent, joints = self.kinematics.independent, self.kinematics.joints
         before = casadi.SX.sym("before", self.kinematics.n_independent)
         middle, half = (arm.minimum + arm.maximum) / 2, (arm.maximum - arm.minimum) / 2
@@ -102,6 +101,35 @@ class NlpSolver:
                 nearest, error_mm = solver.solution.copy(), miss_mm
         return nearest, False, iterations, error_mm
 
+    def solve_sequence(self, targets_mm: FloatArray, start: FloatArray, *, settle: bool = True) -> Solutions:
+        """Targets (n, 3) one after the other from independent joints (n_independent,), each near the one before.
+
+        With `settle` they are a path: the first is solved until it stays where it is, so that the path does not begin
+        with the way from the start, and its iterations count all of that; the others have to follow from it, and are
+        not started again from elsewhere, where the path would jump.
+        """
+        n_targets = len(targets_mm)
+        configurations = np.empty((n_targets, len(start)))
+        converged = np.zeros(n_targets, dtype=bool)
+        iterations = np.zeros(n_targets, dtype=np.int64)
+        error_mm = np.empty(n_targets)
+        before = start
+        for target in targets_mm[: 1 if settle else 0]:
+            for _ in range(_MOST_SETTLING):
+                settled, good, count, _ = self.solve(target, before)
+                iterations[0] += count
+                if not good or np.abs(settled - before).max() < 1e-4:
+                    break
+                before = settled
+        for index, target in enumerate(targets_mm):
+            configurations[index], converged[index], count, error_mm[index] = self.solve(
+                target, before, restarts=index == 0 or not settle
+            )
+            iterations[index] += count
+            if converged[index]:
+                before = configurations[index]
+        return Solutions(configurations, converged, iterations, error_mm)
+
     def _attempts(
         self, target_mm: FloatArray, before: FloatArray, restarts: bool
     ) -> Iterator[tuple[_Buffered, FloatArray]]:
@@ -161,40 +189,3 @@ class _Buffered:
         self._evaluate()
         statistics = self._buffer.stats()
         return bool(statistics["success"]), int(statistics["iter_count"])
-
-
-@lru_cache(maxsize=16)
-def nlp_solver(arm: Arm) -> NlpSolver:
-    """The solver of an arm, built once."""
-    return NlpSolver(arm)
-
-
-def solve_sequence(arm: Arm, targets_mm: FloatArray, start: FloatArray, *, settle: bool = True) -> Solutions:
-    """Targets (n, 3) one after the other from independent joints (n_independent,), each near the one before.
-
-    With `settle` they are a path: the first is solved until it stays where it is, so that the path does not begin with
-    the way from the start, and its iterations count all of that; the others have to follow from it, and are not
-    started again from elsewhere, where the path would jump.
-    """
-    solver = nlp_solver(arm)
-    n_targets = len(targets_mm)
-    configurations = np.empty((n_targets, len(start)))
-    converged = np.zeros(n_targets, dtype=bool)
-    iterations = np.zeros(n_targets, dtype=np.int64)
-    error_mm = np.empty(n_targets)
-    before = start
-    for target in targets_mm[: 1 if settle else 0]:
-        for _ in range(_MOST_SETTLING):
-            settled, good, count, _ = solver.solve(target, before)
-            iterations[0] += count
-            if not good or np.abs(settled - before).max() < 1e-4:
-                break
-            before = settled
-    for index, target in enumerate(targets_mm):
-        configurations[index], converged[index], count, error_mm[index] = solver.solve(
-            target, before, restarts=index == 0 or not settle
-        )
-        iterations[index] += count
-        if converged[index]:
-            before = configurations[index]
-    return Solutions(configurations, converged, iterations, error_mm)

@@ -6,7 +6,7 @@ its coupling. Compiled functions are evaluated over whole arrays of configuratio
 
 from __future__ import annotations
 
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import casadi
 import numpy as np
@@ -14,12 +14,14 @@ import numpy as np
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arrays import FloatArray
 from planner.kinematics.compiled import CompiledFunction
+from planner.kinematics.dh_row import dh_entries
+from planner.kinematics.link_clearance import LinkClearance
 
 _PROBES = 32
 
 
 class Kinematics:
-    """Forward kinematics, Jacobians and the task of one arm, as functions of its independent joints.
+    """Forward kinematics, Jacobians, the task and the clearances of one arm, as functions of its independent joints.
 
     The task is what a configuration has to meet at a pen target: the tip's place (3 rows, mm) and, where the
     tool axis has to point down, its horizontal components (which have to be zero), seen from the turning base.
@@ -37,6 +39,10 @@ class Kinematics:
         self.axis = last[:3, :3] @ casadi.DM(arm.pen.tool_axis)
         self.task = casadi.vertcat(self.tip, *self._pointing()) if arm.pen.hold is PenHold.TOOL_AXIS else self.tip
         self.nodes = casadi.horzcat(*corners).T
+
+    @cached_property
+    def clearance(self) -> LinkClearance:
+        return LinkClearance(self.arm, self.nodes_mm)
 
     def _pointing(self) -> list[casadi.SX]:
         """The horizontal components of the tool axis that are not zero by construction."""
@@ -135,8 +141,7 @@ class Kinematics:
 
     def independent_of(self, joints: FloatArray) -> FloatArray:
         """The independent joints (..., n_independent) among all (..., n_joints)."""
-        chosen: FloatArray = np.ascontiguousarray(joints[..., list(self.arm.independent_joints)])
-        return chosen
+        return self.arm.independent_of(joints)
 
 
 def _chain(arm: Arm, joints: casadi.SX) -> tuple[list[casadi.SX], list[casadi.SX]]:
@@ -155,23 +160,6 @@ def _chain(arm: Arm, joints: casadi.SX) -> tuple[list[casadi.SX], list[casadi.SX
 
 
 def _dh(theta: casadi.SX | float, d: casadi.SX | float, a_mm: float, alpha_rad: float) -> casadi.SX:
-    """Rz(theta) Tz(d) Tx(a) Rx(alpha), with exact zeros and ones where alpha is a right angle."""
-    c, s = casadi.cos(theta), casadi.sin(theta)
-    ca, sa = _exact(np.cos(alpha_rad)), _exact(np.sin(alpha_rad))
-    return casadi.vertcat(
-        casadi.horzcat(c, -s * ca, s * sa, a_mm * c),
-        casadi.horzcat(s, c * ca, -c * sa, a_mm * s),
-        casadi.horzcat(0, sa, ca, d),
-        casadi.horzcat(0, 0, 0, 1),
-    )
-
-
-def _exact(value: float) -> float:
-    rounded = round(value)
-    return float(rounded) if abs(value - rounded) < 1e-15 else float(value)
-
-
-@lru_cache(maxsize=16)
-def kinematics_of(arm: Arm) -> Kinematics:
-    """The kinematics of an arm, built once."""
-    return Kinematics(arm)
+    rows = dh_entries(casadi.cos(theta), casadi.sin(theta), d, a_mm, alpha_rad)
+    transform: casadi.SX = casadi.vertcat(*(casadi.horzcat(*row) for row in rows))
+    return transform

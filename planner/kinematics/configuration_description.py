@@ -8,6 +8,7 @@ import numpy as np
 
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
+from planner.json_numbers import rounded
 from planner.kinematics.frame_jacobian import chain_frames
 from planner.kinematics.sensitivity import sideways_error, tip_sensitivity
 from planner.kinematics.singular_shapes import singular_shapes
@@ -39,16 +40,16 @@ def configuration_description(arm: Arm, joints: FloatArray, in_frame: int = 0) -
         "coupling_error_deg": _named(
             [names[coupling.joint] for coupling in arm.couplings], np.degrees(_coupling_errors(arm, joints))
         ),
-        "tip_mm": _clean(frame[:3, 3]),
-        "rotation": _clean(frame[:3, :3]),
-        "tilt_deg": _clean(np.degrees(np.arctan2(np.hypot(pen[0], pen[1]), -pen[2]))),
+        "tip_mm": rounded(frame[:3, 3]),
+        "rotation": rounded(frame[:3, :3]),
+        "tilt_deg": rounded(np.degrees(np.arctan2(np.hypot(pen[0], pen[1]), -pen[2]))),
         "jacobian_frame": in_frame,
-        "jacobian": _clean(found.jacobian),
+        "jacobian": rounded(found.jacobian),
         "rows": rows,
-        "length_mm": _clean(found.mobility.length_mm),
-        "singular_values": _clean(found.singular_values),
-        "condition": None if found.is_singular else _clean(found.condition),
-        "manipulability": _clean(found.manipulability),
+        "length_mm": rounded(found.mobility.length_mm),
+        "singular_values": rounded(found.singular_values),
+        "condition": None if found.is_singular else rounded(found.condition),
+        "manipulability": rounded(found.manipulability),
         "freedom": found.mobility.freedom,
         "rank": found.rank,
         "singular": found.is_singular,
@@ -56,7 +57,7 @@ def configuration_description(arm: Arm, joints: FloatArray, in_frame: int = 0) -
         "internal_motion": [_named(names, motion) for motion in _in_file_units(arm, found.internal)],
         "impossible_velocity": [_named(rows, velocity) for velocity in found.impossible],
         "tip_error_mm": _named(names, np.linalg.norm(tip_sensitivity(arm, joints[None])[0], axis=0)),
-        "sideways_error_mm": _clean(sideways_error(arm, joints[None])[0]),
+        "sideways_error_mm": rounded(sideways_error(arm, joints[None])[0]),
     }
 
 
@@ -152,9 +153,4 @@ def _velocity(weights: dict[str, float]) -> str:
 
 
 def _named(names: list[str], values: FloatArray) -> dict[str, float]:
-    return dict(zip(names, _clean(values), strict=True))
-
-
-def _clean(values: Any) -> Any:
-    """Numbers for JSON, to nine decimals, with no "-0.0"."""
-    return (np.round(np.asarray(values, dtype=np.float64), 9) + 0.0).tolist()
+    return dict(zip(names, rounded(values), strict=True))

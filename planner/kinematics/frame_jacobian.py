@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from planner.arms.arm import Arm, JointKind
+from planner.arms.arm import Arm, Joint, JointKind
 from planner.arrays import FloatArray
 from planner.errors import UsageError
+from planner.kinematics.dh_row import dh_entries
 
 
 def chain_frames(arm: Arm, joints: FloatArray) -> FloatArray:
@@ -19,9 +20,7 @@ def chain_frames(arm: Arm, joints: FloatArray) -> FloatArray:
     frames = np.zeros((len(joints), arm.n_joints + 1, 4, 4))
     frames[:, 0] = np.eye(4)
     for index, joint in enumerate(arm.joints):
-        frames[:, index + 1] = frames[:, index] @ _row(
-            joint.theta_rad, joint.d_mm, joint.a_mm, joint.alpha_rad, joint.kind, joints[:, index]
-        )
+        frames[:, index + 1] = frames[:, index] @ _row(joint, joints[:, index])
     return frames
 
 
@@ -48,18 +47,13 @@ def frame_jacobian(arm: Arm, joints: FloatArray, of_frame: int | None = None, in
     return jacobian
 
 
-def _row(
-    theta_rad: float, d_mm: float, a_mm: float, alpha_rad: float, kind: JointKind, position: FloatArray
-) -> FloatArray:
-    """(n, 4, 4) Rz(theta) Tz(d) Tx(a) Rx(alpha) of one joint at positions (n,)."""
-    revolute = kind is JointKind.REVOLUTE
-    theta = theta_rad + position if revolute else np.full_like(position, theta_rad)
-    c, s = np.cos(theta), np.sin(theta)
-    ca, sa = np.round((np.cos(alpha_rad), np.sin(alpha_rad)), 15)  # exactly 0 and 1 at right angles
-    row = np.zeros((len(position), 4, 4))
-    row[:, 0] = np.stack((c, -s * ca, s * sa, a_mm * c), axis=1)
-    row[:, 1] = np.stack((s, c * ca, -c * sa, a_mm * s), axis=1)
-    row[:, 2, 1:] = sa, ca, 0.0
-    row[:, 2, 3] = d_mm + (0.0 if revolute else position)
-    row[:, 3, 3] = 1.0
+def _row(joint: Joint, position: FloatArray) -> FloatArray:
+    """(n, 4, 4) the transform of a joint's row at positions (n,)."""
+    revolute = joint.kind is JointKind.REVOLUTE
+    theta = joint.theta_rad + (position if revolute else np.zeros_like(position))
+    d_mm = joint.d_mm + (np.zeros_like(position) if revolute else position)
+    row = np.empty((len(position), 4, 4))
+    for i, entries in enumerate(dh_entries(np.cos(theta), np.sin(theta), d_mm, joint.a_mm, joint.alpha_rad)):
+        for k, entry in enumerate(entries):
+            row[:, i, k] = entry
     return row

@@ -8,16 +8,14 @@ that far from the axis of the other. So it does where what lies between two is t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
 
 from planner.arms.arm import Arm, Joint, JointKind
 from planner.arrays import FloatArray, IntArray
-from planner.kinematics.chain import kinematics_of
 
 KEPT_MM = 0.1
 """Room that is left at samples for what joints do between them."""
@@ -51,10 +49,13 @@ class Collision:
 
 
 class LinkClearance:
-    """Clearances of one arm's configurations. Where its file gives no thickness all are infinite."""
+    """Clearances of one arm's configurations. Where its file gives no thickness all are infinite.
 
-    def __init__(self, arm: Arm) -> None:
-        self._arm = arm
+    nodes_mm: from configurations (n, n_independent) to the corners of the chain (n, n_nodes, 3).
+    """
+
+    def __init__(self, arm: Arm, nodes_mm: Callable[[FloatArray], FloatArray]) -> None:
+        self._arm, self._nodes_mm = arm, nodes_mm
         lengths = [length for joint in arm.joints for length in _longest(joint)]
         with_length = [segment for segment, length in enumerate(lengths) if length > 0]
         capsules = [
@@ -87,7 +88,7 @@ class LinkClearance:
         which of `names` come that close. Infinite where nothing can collide."""
         if not self.names:
             return np.full(len(independent), np.inf), np.zeros(len(independent), dtype=np.int64)
-        nodes = kinematics_of(self._arm).nodes_mm(independent).transpose(1, 0, 2)
+        nodes = self._nodes_mm(independent).transpose(1, 0, 2)
         corners = np.concatenate((np.zeros((1, len(independent), 3)), nodes))  # the chain begins at the base's origin
         clearances = [
             _fold_mm(
@@ -114,7 +115,7 @@ class LinkClearance:
         kept_mm."""
         if not self.names or not sequences:
             return [None] * len(sequences)
-        clearances, which = self.least_mm(kinematics_of(self._arm).independent_of(np.concatenate(sequences)))
+        clearances, which = self.least_mm(self._arm.independent_of(np.concatenate(sequences)))
         found: list[Collision | None] = []
         start = 0
         for sequence in sequences:
@@ -124,12 +125,6 @@ class LinkClearance:
             found.append(Collision(pair, clearance, configuration) if clearance < kept_mm else None)
             start += len(sequence)
         return found
-
-
-@lru_cache(maxsize=16)
-def link_clearance(arm: Arm) -> LinkClearance:
-    """The clearances of an arm, laid out once."""
-    return LinkClearance(arm)
 
 
 def _longest(joint: Joint) -> tuple[float, float]:

@@ -8,7 +8,6 @@ arm's own, so that millimetres and radians weigh alike.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -67,7 +66,6 @@ class Singularity:
         return np.inf if self.is_singular else float(self.singular_values[0] / self.singular_values[-1])
 
 
-@lru_cache(maxsize=64)
 def mobility(arm: Arm, of_frame: int | None = None, in_frame: int = 0) -> Mobility:
     """What the arm can do with frame `of_frame` seen from frame `in_frame`, from configurations drawn at random.
 

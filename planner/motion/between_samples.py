@@ -15,15 +15,9 @@ import numpy as np
 from planner.arrays import FloatArray, IntArray
 from planner.kinematics.chain import Kinematics
 from planner.motion.stroke_motion import StrokeMotions
+from planner.motion.tolerance import ACROSS_SHARE, ASIDE_SHARE, DRIFT_SHARE, HEIGHT_SHARE
 from planner.placement.pen_path import PenPaths
 from planner.ragged import starts_of, within
-
-ASIDE_SHARE = 0.44
-"""Share of the tolerance that the tip may be off a stroke's smooth path between samples, and that off it."""
-HEIGHT_SHARE, DRIFT_SHARE = 0.5, 0.5
-"""Shares of the tolerance: height of the tip while it draws; drift, or depth below the paper, while it is lifted."""
-ACROSS_SHARE = 0.45
-"""Share of the tolerance that a stroke may bend the way to and from it, and that way the stroke."""
 
 _WAY_PER_STEP = 6
 """Points of the way itself to a step: fewer would cut the corners that samples are blamed for."""

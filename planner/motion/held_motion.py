@@ -14,11 +14,11 @@ import numpy as np
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import JointPaths
 from planner.kinematics.chain import Kinematics
+from planner.kinematics.limits import Limits
 from planner.motion.between_samples import stroke_excess
 from planner.motion.stroke_motion import StrokeMotions, motions
 from planner.placement.pen_path import PenPaths
 from planner.ragged import starts_of, within
-from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 

@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.placement.pen_path import PenPaths
 from planner.ragged import starts_of
+from planner.settings import PlanSettings
 
 _STEP = 0.85
 """Ratio of the speeds that are tried, one after the other."""
 _GAP_MM = 1e4
 _PARTS = 2
 """Parts of a cell at whose ends chords are tried: a hairpin may turn in the middle of one."""
+
+
+def pen_speed_mm_s(arm: Arm, settings: PlanSettings) -> float:
+    """The cap on the pen's speed on the paper: what is asked for, or the arm's own."""
+    return settings.speed_mm_s or arm.pen.speed_mm_s
 
 
 def rate_limit(
@@ -26,7 +33,7 @@ def rate_limit(
     """
     speeds = _chord_speeds(paths, speed_mm_s, chord_error_mm, rate_hz)
     between = np.maximum(1.0 - np.abs(_PARTS * fractions - np.arange(_PARTS + 1)[:, None]), 0.0)
-    slope = paths.points(fractions, 1)
+    slope = paths.positions(fractions, 1)
     with np.errstate(divide="ignore"):
         cap: FloatArray = speeds @ between / np.hypot(slope[..., 0], slope[..., 1])
     return cap
@@ -34,7 +41,7 @@ def rate_limit(
 
 def _chord_speeds(paths: PenPaths, speed_mm_s: float, chord_error_mm: float, rate_hz: float) -> FloatArray:
     """(total cells, _PARTS + 1) the speeds that chords allow at the ends of the parts of every cell."""
-    ends = paths.points(np.linspace(0.0, 1.0, _PARTS + 1))
+    ends = paths.positions(np.linspace(0.0, 1.0, _PARTS + 1))
     steps = np.hypot(*np.moveaxis(np.diff(ends, axis=1), 2, 0)).ravel()
     n_parts = _PARTS * paths.n_cells
     first = starts_of(n_parts)[:-1]

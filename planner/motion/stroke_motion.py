@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import FloatArray, IntArray
-from planner.inverse_kinematics.joint_path import DEGREE, JointPaths
+from planner.inverse_kinematics.joint_path import JointPaths
+from planner.kinematics.limits import Limits
 from planner.ragged import starts_of, within
 from planner.spline import evaluate, first_controls
+from planner.spline_paths import DEGREE
 from planner.timing.length_bound import SLOW_ARM, require_bounded
-from planner.timing.limits import Limits
 
 _CHECKS_PER_CELL = 20
 _CELLS_AT_ONCE = 2048
@@ -67,10 +68,6 @@ class StrokeMotions:
         fraction[number == 0] = 0.0
         fraction[number == np.repeat(n_steps, counts)] = 1.0
         return cell, fraction
-
-    def sample(self, path: int) -> FloatArray:
-        """(n_periods + 1, n_joints) the samples of one stroke."""
-        return self.samples()[path]
 
 
 def motions(paths: JointPaths, rates: FloatArray, limits: Limits, rate_hz: float) -> StrokeMotions:

@@ -17,9 +17,9 @@ import numpy as np
 
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.ragged import starts_of, within
-from planner.spline import evaluate, evaluate_at, first_controls, subdivided
+from planner.spline import evaluate, evaluate_at, first_controls
+from planner.spline_paths import DEGREE, SplinePaths
 
-DEGREE = 5
 _LONGEST_CELL_MM = 0.8
 _GRADING = 0.6
 """How fast the spacing of control points may grow, mm per mm of path."""
@@ -43,32 +43,10 @@ _FIRST_OFFSETS = np.array([-5.0, 0.5, 0.0, -0.5, 5.0])
 """Control points of sigma cubed on a uniform quintic spline with a knot at zero (its blossom)."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class PenPaths:
-    """Smooth paths of many strokes, laid end to end.
+class PenPaths(SplinePaths):
+    """Smooth paths of the pen on the paper: positions are points (2,) in mm."""
 
-    n_cells: (n_paths,) cells of each path; controls_mm: (total cells + 5 n_paths, 2) control points on
-    the paper. Path parameter sigma runs from 0 to n_cells.
-    """
-
-    n_cells: IntArray
-    controls_mm: FloatArray
-
-    def points(self, fractions: FloatArray, derivative: int = 0) -> FloatArray:
-        """(total cells, n_fractions, 2) points, or derivatives by sigma, at fractions of every cell."""
-        return evaluate(self.controls_mm, first_controls(self.n_cells, DEGREE), fractions, DEGREE, derivative)
-
-    def at(self, cells: IntArray, fractions: FloatArray) -> FloatArray:
-        """(n, 2) points at one fraction in each of the named cells (counted over all paths)."""
-        return evaluate_at(self.controls_mm, first_controls(self.n_cells, DEGREE)[cells], fractions, DEGREE)
-
-    def subdivided(self) -> PenPaths:
-        """The same paths with every cell cut in two, sigma counting the new cells."""
-        return PenPaths(2 * self.n_cells, subdivided(self.controls_mm, self.n_cells, DEGREE))
-
-    def subset(self, chosen: BoolArray) -> PenPaths:
-        """Only the paths of the mask (n_paths,)."""
-        return PenPaths(self.n_cells[chosen], self.controls_mm[np.repeat(chosen, self.n_cells + DEGREE)])
+    __slots__ = ()
 
 
 def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPaths:
@@ -261,10 +239,10 @@ def _deviation(
     and the spacing used there."""
     cells = first_controls(paths.n_cells, DEGREE)
     at = evaluate(arcs_mm[:, None], cells, _SAMPLED, DEGREE)[:, :, 0].ravel()
-    gap = evaluate(paths.controls_mm, cells, _SAMPLED, DEGREE).reshape(-1, 2) - line.at(at)
+    gap = evaluate(paths.controls, cells, _SAMPLED, DEGREE).reshape(-1, 2) - line.at(at)
     # A corner is furthest from the curve, and mostly lies between samples.
     passed = np.interp(line.arc_mm, at, np.arange(len(at))) / len(_SAMPLED)
     cell = passed.astype(np.int64)
-    corner_gap = evaluate_at(paths.controls_mm, cells[cell], passed - cell, DEGREE) - line.points_mm
+    corner_gap = evaluate_at(paths.controls, cells[cell], passed - cell, DEGREE) - line.points_mm
     at = np.concatenate((at, line.arc_mm))
     return np.hypot(*np.concatenate((gap, corner_gap)).T), at, spacing.at(at)

@@ -8,13 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FormatStrFormatter, MaxNLocator
 
-from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.comparison.compare import Comparison
 from planner.comparison.convergence import Convergence
 from planner.counted import counted
 from planner.inverse_kinematics.dls import DOCUMENTED, MM_PER_CM
-from planner.kinematics.chain import kinematics_of
+from planner.kinematics.chain import Kinematics
 from planner.plots.comparison_look import Line, line_of, method_handles, shown
 from planner.plots.look import LIMIT_DASHES, USUAL, Look
 from planner.plots.sheet import Sheet
@@ -27,6 +26,7 @@ def plot_single(comparison: Comparison, look: Look = USUAL) -> Figure:
     """Three panels for the first target: the error by iteration; the links from the side, in the vertical plane through
     base and target; and from above, as seen from behind the base. Errors: UsageError where no method solves it."""
     found, arm = comparison.convergences[0], comparison.arm
+    kinematics = Kinematics(arm)
     able = [(result, measured) for result, measured in shown(comparison) if measured.solved[0]]
     configurations = [(line_of(result), measured.joints[0]) for result, measured in able]
     start = Line(look.colours.travel, 1.5, (0, (1, 1.6)))
@@ -39,7 +39,7 @@ def plot_single(comparison: Comparison, look: Look = USUAL) -> Figure:
         _draw_convergence(convergence, found, look)
         azimuth = float(np.arctan2(found.target_mm[1], found.target_mm[0]))
         for line, joints in ((start, comparison.start), *configurations):
-            corners = _links_mm(arm, joints)
+            corners = _links_mm(kinematics, joints)
             along = corners[:, :2] @ (np.cos(azimuth), np.sin(azimuth))
             for axes, across, up in ((side, along, corners[:, 2]), (above, corners[:, 1], corners[:, 0])):
                 axes.plot(
@@ -105,9 +105,8 @@ def _draw_convergence(axes: Axes, found: Convergence, look: Look) -> None:
     axes.legend(loc="best", fontsize=0.88 * look.letter_pt)
 
 
-def _links_mm(arm: Arm, joints: FloatArray) -> FloatArray:
+def _links_mm(kinematics: Kinematics, joints: FloatArray) -> FloatArray:
     """(n, 3) corners of the chain of links, from the base to the tip."""
-    kinematics = kinematics_of(arm)
     nodes = kinematics.nodes_mm(kinematics.independent_of(joints)[None])[0]
     corners: FloatArray = np.concatenate((np.zeros((1, 3)), nodes))
     return corners

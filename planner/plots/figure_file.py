@@ -9,9 +9,8 @@ from typing import IO, cast
 from matplotlib.figure import Figure
 
 from planner.errors import UsageError
-from planner.files import is_standard_output
+from planner.files import is_standard_output, written_aside
 from planner.plots.look import USUAL, Look
-from planner.trajectory import written_aside
 
 # What each format would say of the time of writing is left out: equal figures make equal files.
 _UNDATED: dict[str, dict[str, None]] = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
@@ -17,15 +17,12 @@ from PIL import Image
 
 from planner.arrays import FloatArray
 from planner.errors import OutputError, UsageError
-from planner.files import is_standard_output
+from planner.files import is_standard_output, written_aside
 from planner.plots.film import Film, Frame
 from planner.plots.look import USUAL, Colours, Look
 from planner.plots.motion import Motion
 from planner.plots.player import player_page
-from planner.trajectory import written_aside
-
-Show = Callable[[str, int, int], None]
-"""show(label, done, total)."""
+from planner.progress import Report, unreported
 
 FORMATS = ("html", "gif", "mp4")
 _MOST_GIF_FRAMES = 6000  # all of a GIF's frames are in memory before it is written
@@ -56,7 +53,7 @@ def save_film(
     canvas_corners_mm: FloatArray | None = None,
     reach_mm: tuple[float, float] | None = None,
     look: Look = USUAL,
-    show: Show = lambda label, done, total: None,
+    report: Report = unreported,
 ) -> None:
     """Write the film in the format that the suffix names; nothing is left behind where that fails.
 
@@ -76,16 +73,16 @@ def save_film(
             "(--from, --to), or write an .mp4 or .html"
         )
     with look.style(), written_aside(target, binary=True) as file:
-        frames = _shown(film, show)
+        frames = _shown(film, report)
         if kind == "gif":
             _write_gif(frames, motion.fps, _palette(look.colours), cast("IO[bytes]", file))
         else:
             _write_mp4(frames, motion.fps, cast("IO[bytes]", file), target)
 
 
-def _shown(film: Film, show: Show) -> Iterator[Frame]:
+def _shown(film: Film, report: Report) -> Iterator[Frame]:
     for done, frame in enumerate(film.frames()):
-        show("filming", done, film.n_frames)
+        report("filming", done, film.n_frames)
         yield frame
 
 

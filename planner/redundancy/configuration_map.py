@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 
@@ -20,7 +20,8 @@ from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.paper_pose import BASE_PLANE
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.errors import ArmFileError, PlanError
-from planner.kinematics.chain import Kinematics, kinematics_of
+from planner.kinematics.chain import Kinematics
+from planner.kinematics.limits import within_limits
 from planner.kinematics.projection import project
 from planner.redundancy.configuration_path import (
     cheapest_configuration_path,
@@ -54,15 +55,19 @@ _EDGE_MM = 1.0
 class ConfigurationMap:
     """Configurations along the ray of azimuth zero, pen on the paper, which is taken to be level.
 
-    level: the arm on the level paper that the map was made for.
+    kinematics: of the arm; level: of the arm on the level paper that the map was made for.
     radii_mm: (n,) increasing, laid out evenly over the square root of the distance from just beyond the last;
     configurations: (n, n_independent) of the independent joints, rad or mm.
     """
 
-    arm: Arm
-    level: Arm
+    kinematics: Kinematics
+    level: Kinematics
     radii_mm: FloatArray
     configurations: FloatArray
+
+    @property
+    def arm(self) -> Arm:
+        return self.kinematics.arm
 
     @property
     def home(self) -> FloatArray:
@@ -107,21 +112,10 @@ class ConfigurationMap:
 
     def configurations_at(self, tip_mm: FloatArray) -> tuple[FloatArray, BoolArray]:
         """Exact configurations (n, n_independent) at tips (n, 3), and where they exist within the joint limits."""
-        configurations, exact = project(kinematics_of(self.arm), self.reference(tip_mm), tip_mm)
-        return configurations, exact & within_limits(self.arm, configurations)
+        configurations, exact = project(self.kinematics, self.reference(tip_mm), tip_mm)
+        return configurations, exact & within_limits(self.arm, self.arm.complete(configurations))
 
 
-def within_limits(arm: Arm, independent: FloatArray, slack: float = 1e-9, first_joint: bool = True) -> BoolArray:
-    """(n,) whether configurations (n, n_independent) keep all joint limits (without the first joint's, if not asked
-    for)."""
-    joints = arm.complete(independent)
-    start = 0 if first_joint else 1
-    inside = (joints >= arm.minimum - slack) & (joints <= arm.maximum + slack)
-    kept: BoolArray = np.all(inside[:, start:], axis=1)
-    return kept
-
-
-@lru_cache(maxsize=16)
 def levelled(arm: Arm) -> Arm:
     """The arm on a level paper of the same height at the base axis: itself, where its paper is the base plane. A paper
     that is higher is a first row that is shorter. Errors: PlanError where the paper is far from level."""
@@ -137,24 +131,14 @@ def levelled(arm: Arm) -> Arm:
     return replace(arm, joints=(first, *arm.joints[1:]), paper=BASE_PLANE)
 
 
-def configuration_map_of(arm: Arm, weights: ConfigurationWeights | None = None) -> ConfigurationMap:
-    """The field of an arm, computed once. Errors: PlanError where the arm cannot have one, ArmFileError where its file
-    contradicts itself."""
-    return configuration_branches(arm, weights)[0]
-
-
-def configuration_branches(arm: Arm, weights: ConfigurationWeights | None = None) -> tuple[ConfigurationMap, ...]:
-    """The field that reaches over most radii, then maps in other branches, each over as many as it can of those that
-    the ones before leave out. Nearly all arms have one. Errors: as `configuration_map_of`."""
-    return _branches(arm, weights or arm.weights)
-
-
-@lru_cache(maxsize=16)
-def _branches(arm: Arm, weights: ConfigurationWeights) -> tuple[ConfigurationMap, ...]:
-    level = levelled(arm)
-    if level is not arm:
-        return tuple(replace(branch, arm=arm) for branch in _branches(level, weights))
-    cost, radii, samples = choice_of_configurations(arm, weights)
+def configuration_branches(
+    kinematics: Kinematics, level: Kinematics, weights: ConfigurationWeights
+) -> tuple[ConfigurationMap, ...]:
+    """The map that reaches over most radii, then maps in other branches, each over as many as it can of those that
+    the ones before leave out. Nearly all arms have one. level: of the arm on a level paper. This takes a while:
+    `ArmModel` keeps them. Errors: PlanError where the arm cannot have one, ArmFileError where its file contradicts
+    itself."""
+    cost, radii, samples = choice_of_configurations(level, weights)
     left_out = np.array([len(configurations) > 0 for configurations in samples])
     branches: list[ConfigurationMap] = []
     while not branches or left_out.sum() >= _FEWEST_RADII:
@@ -164,7 +148,7 @@ def _branches(arm: Arm, weights: ConfigurationWeights) -> tuple[ConfigurationMap
             break
         branches.append(branch)
         left_out &= ~covered
-    return tuple(branches)
+    return tuple(replace(branch, kinematics=kinematics) for branch in branches)
 
 
 def _configuration_map(
@@ -178,7 +162,7 @@ def _configuration_map(
     )
     if not exact.all():
         raise PlanError(f"arm {arm.name}: the configuration map did not converge")
-    return ConfigurationMap(arm, arm, nodes, configuration_path)
+    return ConfigurationMap(cost.kinematics, cost.kinematics, nodes, configuration_path)
 
 
 def branch_references(branches: Sequence[ConfigurationMap], tips_mm: FloatArray, starts: IntArray) -> FloatArray:
@@ -195,11 +179,12 @@ def branch_references(branches: Sequence[ConfigurationMap], tips_mm: FloatArray,
 
 
 def choice_of_configurations(
-    arm: Arm, weights: ConfigurationWeights
+    kinematics: Kinematics, weights: ConfigurationWeights
 ) -> tuple[ConfigurationCost, FloatArray, list[FloatArray]]:
     """What a map is chosen from, and by what: the cost, some radii (n,) and usable configurations (m, n_independent) at
     each.
-    Errors: as `configuration_map_of`."""
+    Errors: as `configuration_branches`."""
+    arm = kinematics.arm
     first = arm.joints[0]
     if first.kind is not JointKind.REVOLUTE or 0 not in arm.independent_joints:
         what = "slides" if first.kind is JointKind.PRISMATIC else "is driven by a coupling"
@@ -212,7 +197,6 @@ def choice_of_configurations(
         raise PlanError(
             f"arm {arm.name}: joint {first.name} turns the arm about the vertical axis; no coupling may depend on it"
         )
-    kinematics = kinematics_of(arm)
     if kinematics.n_redundant < 0:
         pointed = ", and pointed," if arm.pen.hold is PenHold.TOOL_AXIS else ""
         raise PlanError(

@@ -94,19 +94,6 @@ def polished_configuration_path(
     return configuration_path
 
 
-def configuration_path_cost(cost: ConfigurationCost, along_mm: FloatArray, configuration_path: FloatArray) -> float:
-    """What a course costs: the mean of its densities over the way."""
-    lengths = np.diff(along_mm)
-    own, steps = (
-        cost.configurations(configuration_path),
-        np.diff(cost.kinematics.arm.complete(configuration_path), axis=0),
-    )
-    total = 0.5 * (own[1:] + own[:-1]) @ lengths + sum(
-        float(cost.steps(step, length)) * length for step, length in zip(steps, lengths.tolist(), strict=True)
-    )
-    return float(total / lengths.sum())
-
-
 def _neighbours(
     cost: ConfigurationCost, tips_mm: FloatArray, configuration_path: FloatArray, spacing_s: float
 ) -> list[FloatArray]:

@@ -10,7 +10,6 @@ import numpy as np
 from planner.arms.arm import PenHold
 from planner.arrays import BoolArray, FloatArray
 from planner.kinematics.chain import Kinematics
-from planner.kinematics.link_clearance import link_clearance
 from planner.kinematics.projection import joint_scale
 from planner.kinematics.quickest_lift import quickest_lifts
 
@@ -91,12 +90,12 @@ def _is_quick(kinematics: Kinematics, independent: FloatArray) -> BoolArray:
 
 
 def _links_apart(kinematics: Kinematics, independent: FloatArray) -> BoolArray:
-    apart: BoolArray = link_clearance(kinematics.arm).least_mm(independent)[0] >= LINK_CLEARANCE_MM
+    apart: BoolArray = kinematics.clearance.least_mm(independent)[0] >= LINK_CLEARANCE_MM
     return apart
 
 
 def _links_apart_when_raised(kinematics: Kinematics, independent: FloatArray) -> BoolArray:
-    if not link_clearance(kinematics.arm).names:
+    if not kinematics.clearance.names:
         return np.ones(len(independent), dtype=np.bool_)
     lifts = quickest_lifts(kinematics, kinematics.arm.max_jerk, independent)
     return _links_apart(kinematics, independent + kinematics.arm.pen.lift_mm * lifts)

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.checking.coverage import distance_from_drawing
 from planner.drawing.drawing import Drawing
@@ -21,6 +20,7 @@ from planner.plots.profiles import plot_profiles
 from planner.plots.samples import joined_while_drawing
 from planner.plots.timeline import plot_timeline
 from planner.plots.workspace import plot_workspace
+from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
 from planner.trajectory import Trajectory
 from planner.workspace.canvas import canvas_of
@@ -43,15 +43,16 @@ class Picture:
 
 def pictures(
     trajectory: Trajectory,
-    arm: Arm,
+    model: ArmModel,
     drawing: Drawing,
     tip_mm: FloatArray,
     reach_mm: tuple[float, float],
     settings: PlanSettings,
 ) -> Iterator[Picture]:
     """All pictures, in the order of the page. tip_mm: (n_samples, 3). reach_mm: inner and outer radius on the paper."""
+    arm = model.arm
     lift_mm = arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
-    canvas_mm = canvas_of(arm, settings.canvas, lift_mm).corners_arm_mm
+    canvas_mm = canvas_of(model, settings.canvas, lift_mm).corners_arm_mm
     drawn = joined_while_drawing(trajectory)
     yield _picture(
         "Drawing",
@@ -81,7 +82,7 @@ def pictures(
         "Position, velocity, acceleration and jerk of every joint, with the arm's limits.",
         lambda look: plot_profiles(trajectory, arm, look),
     )
-    maps = paper_map(arm)
+    maps = paper_map(model)
 
     def workspace(look: Look) -> Figure:
         figure = plot_workspace(arm.name, maps, {settings.canvas: canvas_mm}, reach_mm, look)

@@ -16,15 +16,17 @@ from planner.checking.chain import chain_poses
 from planner.checking.check_result import CheckResult
 from planner.drawing.drawing import Drawing
 from planner.errors import OutputError
-from planner.execution.work_chunks import pen_speed_mm_s
+from planner.files import written_aside
+from planner.motion.speed_limit import pen_speed_mm_s
 from planner.plots.look import Theme
+from planner.redundancy.arm_model import ArmModel
 from planner.report.markup import Markup, clean, definitions, element, joined, section, table
 from planner.report.pictures import pictures
 from planner.report.shares import QUANTITIES, LargestShare, largest_shares
 from planner.settings import PlanSettings
 from planner.stroke_figures import StrokeFigures, stroke_figures
 from planner.summary import PlanSummary, clock
-from planner.trajectory import TRAVELLING, Trajectory, written_aside
+from planner.trajectory import TRAVELLING, Trajectory
 
 _N_STROKES = 20
 _MADE_WITH = ("drawing-arm-planner", "numpy", "scipy", "casadi", "ruckig", "matplotlib")
@@ -41,7 +43,7 @@ class Planned:
     settings: PlanSettings
     summary: PlanSummary
     trajectory: Trajectory
-    arm: Arm
+    model: ArmModel
     drawing: Drawing
     check_result: CheckResult
     reach_mm: tuple[float, float]
@@ -62,27 +64,28 @@ def write_report(planned: Planned, target: Path) -> None:
 def report_page(planned: Planned) -> Markup:
     """The page as text, the same for the same plan."""
     trajectory, summary = planned.trajectory, planned.summary
-    tip_mm = chain_poses(planned.arm, planned.arm.from_file_units(trajectory.positions)).tip_mm.T
+    tip_mm = chain_poses(planned.model.arm, planned.model.arm.from_file_units(trajectory.positions)).tip_mm.T
     heading = clean(trajectory.drawing) or "trajectory"
     head = element(
         "head",
         element("meta", charset="utf-8"),
         element("meta", http_equiv="Content-Security-Policy", content=_NEVER_SENT),
         element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        element("title", f"{heading} on {planned.arm.name}"),
+        element("title", f"{heading} on {planned.model.arm.name}"),
         element("style", Markup(files(__package__).joinpath("page.css").read_text(encoding="utf-8"))),
     )
     body = element(
         "body",
         element("h1", heading),
-        element("p", f"on {planned.arm.name}, by method {trajectory.method}", class_="quiet"),
+        element("p", f"on {planned.model.arm.name}, by method {trajectory.method}", class_="quiet"),
         _check_result_in_brief(planned.check_result),
         _facts(summary),
         _warnings(summary.warnings),
         section("Pictures", *_figures(planned, tip_mm)),
-        section("Joints", *_joints(trajectory, planned.arm)),
+        section("Joints", *_joints(trajectory, planned.model.arm)),
         section(
-            "Strokes", *_strokes(stroke_figures(trajectory, tip_mm), pen_speed_mm_s(planned.arm, planned.settings))
+            "Strokes",
+            *_strokes(stroke_figures(trajectory, tip_mm), pen_speed_mm_s(planned.model.arm, planned.settings)),
         ),
         section("Check", *_check(planned.check_result)),
         section("How it was made", *_making(planned)),
@@ -149,7 +152,7 @@ def _figures(planned: Planned, tip_mm: FloatArray) -> list[Markup]:
             element("figcaption", picture.caption),
         )
         for picture in pictures(
-            planned.trajectory, planned.arm, planned.drawing, tip_mm, planned.reach_mm, planned.settings
+            planned.trajectory, planned.model, planned.drawing, tip_mm, planned.reach_mm, planned.settings
         )
     ]
 
@@ -245,15 +248,17 @@ def _check(check_result: CheckResult) -> list[Markup]:
 
 def _making(planned: Planned) -> list[Markup]:
     settings = planned.settings
-    weights = ", ".join(f"{name} {value:g}" for name, value in asdict(settings.weights or planned.arm.weights).items())
-    lift_mm = planned.arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
+    weights = ", ".join(
+        f"{name} {value:g}" for name, value in asdict(settings.weights or planned.model.arm.weights).items()
+    )
+    lift_mm = planned.model.arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
     used = [
-        ("arm", f"{planned.arm.name}: {planned.arm.source}"),
+        ("arm", f"{planned.model.arm.name}: {planned.model.arm.source}"),
         ("method", settings.method.value),
         ("weights", weights),
         ("rate", f"{settings.rate_hz:g} Hz"),
         ("tolerance", f"{settings.tolerance_mm:g} mm"),
-        ("pen's speed on paper, at most", f"{pen_speed_mm_s(planned.arm, settings):g} mm/s"),
+        ("pen's speed on paper, at most", f"{pen_speed_mm_s(planned.model.arm, settings):g} mm/s"),
         ("lowering, at most", f"{settings.lowering_speed_mm_s:g} mm/s"),
         ("rest before a stroke", f"{settings.dwell_s:g} s"),
         ("lift", f"{lift_mm:g} mm"),

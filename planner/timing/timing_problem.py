@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import BoolArray, FloatArray, IntArray
-from planner.timing.limits import Limits
+from planner.kinematics.limits import Limits
 
 FRACTIONS = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 """Points of each cell at which velocity and jerk limits are imposed."""

@@ -11,12 +11,12 @@ import numpy as np
 
 from planner.arrays import FloatArray
 from planner.kinematics.chain import Kinematics
-from planner.kinematics.link_clearance import link_clearance
+from planner.kinematics.limits import Limits, within_limits
+from planner.motion.timed_stroke import Contact
 from planner.redundancy.configuration_tests import LINK_CLEARANCE_MM
-from planner.timing.limits import Limits
 from planner.travel.ruckig_profile import rest_to_rest
 from planner.travel.travel_choice import coordinate_limits
-from planner.travel.travel_moves import Contact, TravelMove, TravelRules, plan_travel_moves
+from planner.travel.travel_moves import TravelMove, TravelRules, plan_travel_moves
 
 _VIAS = 2000
 _MET = 1e-6
@@ -41,12 +41,8 @@ def plan_branch_change(
     )
     joints = kinematics.arm.complete(corners)
     legs = [_leg(limits, rules, joints[k], joints[k + 1])[1:] for k in range(len(joints) - 1)]
-    over_s = sum(map(len, legs)) / rules.rate_hz
     return TravelMove(
         np.concatenate((up.joints, *legs, down.joints[1:])),
-        up.lifting_s,
-        up.travelling_s + up.lowering_s + over_s + down.lifting_s + down.travelling_s,
-        down.lowering_s,
         up.exact and down.exact and len(legs) > 0,
         held=up.held and down.held,
         too_long_s=max(up.too_long_s, down.too_long_s),
@@ -62,7 +58,7 @@ def _way(kinematics: Kinematics, limits: Limits, rules: TravelRules, start: Floa
     vias = np.random.default_rng(20220601).uniform(arm.minimum, arm.maximum, (_VIAS, arm.n_joints))
     independent = kinematics.independent_of(vias)
     joints = arm.complete(independent)
-    within = ((joints >= arm.minimum) & (joints <= arm.maximum)).all(axis=1)
+    within = within_limits(arm, joints, slack=0.0)
     ends = arm.complete(np.stack((start, end)))
     times = sum((np.abs(joints - corner) / limits.velocity).max(axis=1) for corner in ends)
     for via in independent[within][np.argsort(np.asarray(times)[within], kind="stable")]:
@@ -76,7 +72,7 @@ def _is_clear(kinematics: Kinematics, rules: TravelRules, start: FloatArray, end
     line = start + _PROBES[:, None] * (end - start)
     heights = kinematics.nodes_mm(line)[:, :, 2]
     above = heights[:, -1].min() >= rules.clearance_mm and heights[:, :-1].min() >= 0.0
-    return bool(above and link_clearance(kinematics.arm).least_mm(line)[0].min() >= LINK_CLEARANCE_MM)
+    return bool(above and kinematics.clearance.least_mm(line)[0].min() >= LINK_CLEARANCE_MM)
 
 
 def _leg(limits: Limits, rules: TravelRules, start: FloatArray, end: FloatArray) -> FloatArray:

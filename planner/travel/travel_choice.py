@@ -15,7 +15,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from planner.arrays import FloatArray, IntArray
-from planner.timing.limits import Limits
+from planner.kinematics.limits import Limits
 
 _AIMS = 1.02, 1.94
 """Heights that the rise to the handover may aim at, in heights of the handover: the highest sample of a travel move

@@ -16,12 +16,13 @@ import numpy as np
 
 from planner.arrays import BoolArray, FloatArray
 from planner.kinematics.chain import Kinematics
+from planner.kinematics.limits import Limits, within_limits
 from planner.kinematics.link_clearance import Collision
 from planner.kinematics.projection import project
 from planner.kinematics.quickest_lift import quickest_lifts
 from planner.motion.between_samples import travel_move_excess
+from planner.motion.timed_stroke import Contact
 from planner.timing.length_bound import MOST_SAMPLES_OF_A_HOP, require_bounded
-from planner.timing.limits import Limits
 from planner.travel.ruckig_profile import NoSuchMove, RestToRest, between_states, rest_to_rest
 from planner.travel.travel_choice import (
     RESTING_SHARE,
@@ -70,7 +71,7 @@ class TravelRules:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TravelMove:
-    """Joint samples (n_samples, n_joints) of a travel move, both ends included, and the durations of its phases in s.
+    """Joint samples (n_samples, n_joints) of a travel move, both ends included.
 
     exact: False where the pen could not be kept on its way, or a joint left its range, or jumps however slow the move.
     held: whether the tip is within the tolerance between samples. collision: where links would come too close.
@@ -79,22 +80,10 @@ class TravelMove:
     """
 
     joints: FloatArray
-    lifting_s: float
-    travelling_s: float
-    lowering_s: float
     exact: bool
     held: bool = True
     collision: Collision | None = None
     too_long_s: float = 0.0
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Contact:
-    """Where a travel move leaves or meets the paper: the tip (2,) in mm and the independent joints (n_independent,)
-    there."""
-
-    tip_mm: FloatArray
-    configuration: FloatArray
 
 
 def plan_travel_moves(
@@ -161,7 +150,7 @@ def _held(kinematics: Kinematics, limits: Limits, plans: Sequence[_Timed], rules
         helped = excess < _HELPED * before
         steady = [limits.slowing_of(samples, 1 / rules.rate_hz) < _JUMP for samples in joints]
         moves.update(
-            (index, plan.move(samples, bool(good.all()) and moves, over <= 1.0))
+            (index, TravelMove(samples, bool(good.all()) and moves, over <= 1.0, too_long_s=plan.too_long_s))
             for index, plan, samples, good, moves, over, kept in zip(
                 left.tolist(), plans, joints, exact, steady, excess.tolist(), helped.tolist(), strict=True
             )
@@ -295,19 +284,6 @@ class _Timed:
             clear = (times > self.over_begins_s) & (times < self.clear_until_s)
             height[clear] = self.above.at(times[clear] - self.over_begins_s)
         return self.over.at(times - self.over_begins_s), height
-
-    def move(self, joints: FloatArray, exact: bool, held: bool) -> TravelMove:
-        lifting = self.over_begins_s * self.factor
-        lowering = (self.natural_s - self.clear_until_s) * self.factor
-        return TravelMove(
-            joints,
-            lifting,
-            max(self.duration_s - lifting - lowering, 0.0),
-            lowering,
-            exact,
-            held,
-            too_long_s=self.too_long_s,
-        )
 
 
 def _joint_slopes(kinematics: Kinematics, shapes: Sequence[_Shape]) -> Slopes:
@@ -468,7 +444,6 @@ def _sampled_together(
         counts.append(count + 1)
     independent, exact = project(kinematics, np.concatenate(references), np.concatenate(tips))
     joints = kinematics.arm.complete(independent)
-    arm = kinematics.arm
-    exact &= ((joints >= arm.minimum - 1e-9) & (joints <= arm.maximum + 1e-9)).all(axis=1)
+    exact &= within_limits(kinematics.arm, joints)
     bounds = np.cumsum(counts)[:-1]
     return np.split(joints, bounds), np.split(exact, bounds)

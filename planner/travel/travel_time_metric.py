@@ -6,18 +6,18 @@ from collections.abc import Callable
 
 import numpy as np
 
-from planner.arms.arm import Arm
 from planner.arrays import FloatArray
-from planner.redundancy.configuration_map import branch_references, configuration_branches
+from planner.redundancy.arm_model import ArmModel
+from planner.redundancy.configuration_map import branch_references
 
 
-def travel_time_metric(arm: Arm) -> Callable[[FloatArray], FloatArray]:
+def travel_time_metric(model: ArmModel) -> Callable[[FloatArray], FloatArray]:
     """From points (n, 2) in mm to all joints (n, n_joints) of the map's configurations there, over their jerk limits.
 
     A short move from rest to rest takes `(32 |dq| / jerk)^(1/3)`, whatever the speed and acceleration limits.
     Errors: PlanError where the arm has no configuration map.
     """
-    branches = configuration_branches(arm)
+    arm, branches = model.arm, model.branches()
 
     def embed(points_mm: FloatArray) -> FloatArray:
         configurations = branch_references(

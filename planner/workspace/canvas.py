@@ -8,18 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import casadi
 import numpy as np
 
-from planner.arms.arm import Arm, JointKind
+from planner.arms.arm import JointKind
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import PlanError
-from planner.kinematics.chain import kinematics_of
-from planner.kinematics.link_clearance import KEPT_MM, link_clearance
+from planner.kinematics.limits import SLACK, beyond_limits
+from planner.kinematics.link_clearance import KEPT_MM
 from planner.kinematics.projection import project
-from planner.redundancy.configuration_map import ConfigurationMap, configuration_branches, within_limits
+from planner.redundancy.arm_model import ArmModel
+from planner.redundancy.configuration_map import ConfigurationMap
 from planner.settings import CanvasKind
 
 _MOST_ITERATIONS = 3000
@@ -106,14 +106,13 @@ def _tangent_canvas(kind: CanvasKind, r_max_mm: float, r_min_mm: float, half_ang
     return Canvas(kind, r_min_mm, r_max_mm * float(np.cos(half_angle_rad)), -half_width, half_width)
 
 
-@lru_cache(maxsize=16)
-def geometric_reach_mm(arm: Arm) -> float:
+def geometric_reach_mm(model: ArmModel) -> float:
     """Largest distance from the base axis at which the pen, held as the arm holds it, touches the paper, limits of
     turning joints aside: how far a joint slides is a length of the arm. For the drawing arm
     sqrt((L2+L3+L4)^2 - (L5-L1)^2): minus, where the documents print plus. Errors: PlanError where it is not found."""
-    branches = configuration_branches(arm)
+    arm, branches = model.arm, model.branches()
     outermost = max(branches, key=lambda branch: branch.radii_mm[-1])
-    kinematics = kinematics_of(outermost.level)
+    kinematics = outermost.level
     solver = casadi.nlpsol(
         "reach",
         "ipopt",
@@ -142,11 +141,10 @@ def geometric_reach_mm(arm: Arm) -> float:
     return max(float(-solution["f"]) * 100, float(outermost.radii_mm[-1]))
 
 
-@lru_cache(maxsize=16)
-def usable_canvas(arm: Arm, lift_mm: float) -> Canvas:
+def usable_canvas(model: ArmModel, lift_mm: float) -> Canvas:
     """The largest axis-aligned rectangle where the pen gets to the paper and to the lift height
     with all joints within limits, clear of singularities and links apart, found on a grid and then grown."""
-    branches = configuration_branches(arm)
+    branches = model.branches()
     sectors = [_Sector.of(branch, lift_mm) for branch in branches]
     outer = max(float(branch.radii_mm[-1]) for branch in branches)
     step = outer / _GRID_CELLS
@@ -156,7 +154,7 @@ def usable_canvas(arm: Arm, lift_mm: float) -> Canvas:
     found = _largest_rectangle(inside)
     if found is None:
         raise PlanError(
-            f"arm {arm.name} has no usable canvas: nowhere is the paper reached pen down and pen up"
+            f"arm {model.arm.name} has no usable canvas: nowhere is the paper reached pen down and pen up"
             f" ({lift_mm:g} mm) within the joint limits"
         )
     i0, i1, j0, j1 = found
@@ -175,13 +173,12 @@ def usable_canvas(arm: Arm, lift_mm: float) -> Canvas:
     return Canvas(CanvasKind.USABLE, near, far, right, left)
 
 
-@lru_cache(maxsize=32)
-def canvas_of(arm: Arm, kind: CanvasKind, lift_mm: float) -> Canvas:
+def canvas_of(model: ArmModel, kind: CanvasKind, lift_mm: float) -> Canvas:
     """The canvas of that kind. Errors: PlanError where there is none."""
     if kind is CanvasKind.USABLE:
-        return usable_canvas(arm, lift_mm)
-    innermost = min(float(branch.radii_mm[0]) for branch in configuration_branches(arm))
-    r_max, r_min = geometric_reach_mm(arm), max(arm.workspace.inner_radius_mm, innermost)
+        return usable_canvas(model, lift_mm)
+    innermost = min(float(branch.radii_mm[0]) for branch in model.branches())
+    r_max, r_min = geometric_reach_mm(model), max(model.arm.workspace.inner_radius_mm, innermost)
     return (documented_canvas if kind is CanvasKind.DOCUMENTED else optimal_canvas)(r_max, r_min)
 
 
@@ -196,15 +193,16 @@ class _Sector:
 
     @staticmethod
     def of(configuration_map: ConfigurationMap, lift_mm: float) -> _Sector:
-        arm = configuration_map.level
-        level = replace(configuration_map, arm=arm)
+        level = replace(configuration_map, kinematics=configuration_map.level)
+        arm, kinematics = level.arm, level.kinematics
         radii = np.linspace(configuration_map.radii_mm[0], configuration_map.radii_mm[-1], _RADIAL_STEPS)
         low, high = np.full(len(radii), -np.pi / 2), np.full(len(radii), np.pi / 2)
         for height in np.linspace(0.0, lift_mm, _HEIGHTS):
             tips = np.column_stack((radii, np.zeros_like(radii), np.full_like(radii, height)))
-            independent, exact = project(kinematics_of(arm), level.reference(tips), tips)
-            good = exact & within_limits(arm, independent, first_joint=False)
-            good &= link_clearance(arm).least_mm(independent)[0] >= KEPT_MM
+            independent, exact = project(kinematics, level.reference(tips), tips)
+            # The first joint, which turns the whole of it, is what the azimuth is bounded by.
+            good = exact & (beyond_limits(arm, arm.complete(independent))[:, 1:] <= SLACK).all(axis=1)
+            good &= kinematics.clearance.least_mm(independent)[0] >= KEPT_MM
             low = np.where(good, np.maximum(low, arm.minimum[0] - independent[:, 0]), np.inf)
             high = np.where(good, np.minimum(high, arm.maximum[0] - independent[:, 0]), -np.inf)
         return _Sector(configuration_map, radii, low, high)

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.kinematics.sensitivity import sideways_error
 from planner.kinematics.singularity import manipulability
-from planner.redundancy.configuration_map import configuration_branches
+from planner.redundancy.arm_model import ArmModel
 
 _RADII, _AZIMUTHS = 91, 121
 
@@ -30,9 +29,9 @@ class PaperMap:
     sideways_error_mm: FloatArray
 
 
-def paper_map(arm: Arm) -> PaperMap:
+def paper_map(model: ArmModel) -> PaperMap:
     """The map of an arm. Errors: PlanError where the arm cannot draw."""
-    branches = configuration_branches(arm)
+    arm, branches = model.arm, model.branches()
     reach_mm = min(branch.radii_mm[0] for branch in branches), max(branch.radii_mm[-1] for branch in branches)
     radius, azimuth = np.meshgrid(
         np.linspace(*reach_mm, _RADII), np.linspace(-np.pi / 2, np.pi / 2, _AZIMUTHS), indexing="ij"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from planner.arms.arm import Arm
 from planner.arrays import FloatArray
+from planner.redundancy.arm_model import ArmModel
+from planner.workspace.canvas import usable_canvas
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -19,15 +20,12 @@ class PaperInReach:
     corners_arm_mm: FloatArray
 
 
-def paper_in_reach(arm: Arm) -> PaperInReach:
+def paper_in_reach(model: ArmModel) -> PaperInReach:
     """Found numerically, in about half a second. Errors: PlanError where the arm has no canvas."""
-    from planner.redundancy.configuration_map import configuration_branches
-    from planner.workspace.canvas import usable_canvas
-
-    branches = configuration_branches(arm)
+    branches = model.branches()
     reach_mm = (
         min(float(branch.radii_mm[0]) for branch in branches),
         max(float(branch.radii_mm[-1]) for branch in branches),
     )
-    canvas = usable_canvas(arm, arm.pen.lift_mm)
+    canvas = usable_canvas(model, model.arm.pen.lift_mm)
     return PaperInReach(reach_mm, canvas.width_mm, canvas.height_mm, canvas.corners_arm_mm)

@@ -14,11 +14,33 @@ from hypothesis import strategies as st
 from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Workspace
 from planner.arms.arm_file import arms_folder, load_arm, read_arm_file
 from planner.arrays import FloatArray
+from planner.inverse_kinematics.nlp import NlpSolver
+from planner.inverse_kinematics.references import References, references_of
+from planner.kinematics.chain import Kinematics
+from planner.redundancy.arm_model import ArmModel
+from planner.settings import ConfigurationWeights, Method
+
+_WEIGHTS = ConfigurationWeights()
 
 DRAWING_ARMS = ("drawing_arm", "drawing_arm_2022")
 
 load_once = lru_cache(load_arm)
-"""One value for each arm, as what is computed for an arm is kept by its identity."""
+model_of = lru_cache(ArmModel)
+"""One model for each arm: tests of the same arm do not wait for its configuration map again."""
+
+
+def kinematics_of(arm: Arm) -> Kinematics:
+    return model_of(arm).kinematics
+
+
+@lru_cache
+def solver_of(arm: Arm) -> NlpSolver:
+    return NlpSolver(kinematics_of(arm))
+
+
+def references_for(arm: Arm, method: Method, weights: ConfigurationWeights = _WEIGHTS) -> References:
+    """The method, ready for the arm."""
+    return references_of(model_of(arm), method, weights)
 
 
 def dh_matrix(theta: float, d: float, a: float, alpha: float) -> FloatArray:

@@ -8,9 +8,8 @@ import pytest
 from planner.arms.arm import JointKind, PenHold
 from planner.arms.arm_file import known_arms
 from planner.kinematics.frame_jacobian import chain_frames
-from planner.redundancy.configuration_map import configuration_map_of
 from planner.workspace.canvas import usable_canvas
-from tests.arms.chains import load_once
+from tests.arms.chains import load_once, model_of
 
 TAUGHT = {
     "scara": ("0 0 0 0", "100 100 0 0", PenHold.CONSTRUCTION),
@@ -23,12 +22,12 @@ TAUGHT = {
 @pytest.mark.parametrize("name", known_arms())
 def test_every_arm_has_a_canvas_and_configurations_within_limits(name: str) -> None:
     arm = load_once(name)
-    canvas = usable_canvas(arm, arm.pen.lift_mm)
+    canvas = usable_canvas(model_of(arm), arm.pen.lift_mm)
     assert canvas.width_mm >= 60
     assert canvas.height_mm >= 25
     tips = np.column_stack((canvas.corners_arm_mm, np.zeros(4)))
     for height in (0.0, arm.pen.lift_mm):
-        configurations, kept = configuration_map_of(arm).configurations_at(tips + np.array([0.0, 0.0, height]))
+        configurations, kept = model_of(arm).configuration_map().configurations_at(tips + np.array([0.0, 0.0, height]))
         assert kept.all()
         pen = chain_frames(arm, arm.complete(configurations))[:, -1] @ [*arm.pen.tool_axis, 0.0]
         if arm.pen.hold is not PenHold.FREE:

@@ -17,14 +17,12 @@ from planner.arms.description import arm_description
 from planner.cli import main
 from planner.errors import PlanError
 from planner.inverse_kinematics.stroke_configurations import joint_paths
-from planner.kinematics.chain import kinematics_of
 from planner.kinematics.projection import project
 from planner.placement.pen_path import smooth_paths
-from planner.redundancy.configuration_map import configuration_branches, configuration_map_of
 from planner.redundancy.samples import COARSE_STEP_MM, on_ray, stretched_to_edges
 from planner.settings import CanvasKind, ConfigurationWeights, Method
 from planner.workspace.canvas import canvas_of
-from tests.arms.chains import load_once, tips_by_product
+from tests.arms.chains import kinematics_of, load_once, model_of, references_for, tips_by_product
 from tests.arms.known_arms import KNOWN_ARMS, file_text, scaled
 
 _DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 30" fill="none" stroke="black">
@@ -39,7 +37,7 @@ def drawing(tmp_path: Path) -> Path:
 
 
 def require_exact_field(arm: Arm) -> None:
-    for sheet in configuration_branches(arm):
+    for sheet in model_of(arm).branches():
         tips = on_ray(np.linspace(sheet.radii_mm[0], sheet.radii_mm[-1], 200))
         independent, good = sheet.configurations_at(tips)
         assert good.all()
@@ -59,7 +57,7 @@ def test_arms_of_any_size_have_one(name: str, log_factor: float) -> None:
     arm = scaled(load_once(name), float(np.exp(log_factor)))
     require_exact_field(arm)
     for kind in (CanvasKind.USABLE, CanvasKind.OPTIMAL):
-        assert np.isfinite(canvas_of(arm, kind, arm.pen.lift_mm).corners_arm_mm).all()
+        assert np.isfinite(canvas_of(model_of(arm), kind, arm.pen.lift_mm).corners_arm_mm).all()
 
 
 @pytest.mark.parametrize("name", ["panda"])
@@ -73,7 +71,7 @@ def test_they_draw_what_the_check_accepts(name: str, drawing: Path, tmp_path: Pa
 def test_a_long_way_from_the_reference_a_pen_still_points_at_its_target() -> None:
     """Millimetres of a metre and radians of pointing stand side by side in one equation."""
     arm = KNOWN_ARMS["ur5e"]
-    field, kinematics = configuration_map_of(arm), kinematics_of(arm)
+    field, kinematics = model_of(arm).configuration_map(), kinematics_of(arm)
     radii = np.linspace(field.radii_mm[0] + 20, field.radii_mm[-1] - 20, 30)
     references = np.repeat(field.home[None], len(radii), axis=0)
     found, exact = project(kinematics, references, on_ray(radii))
@@ -85,7 +83,7 @@ def test_a_long_way_from_the_reference_a_pen_still_points_at_its_target() -> Non
 def test_a_course_keeps_the_way_to_its_edges() -> None:
     """Where few configurations are sampled, the walk to the edge is long, and what lies between has to be near it."""
     arm = KNOWN_ARMS["ur5e"]
-    field, kinematics = configuration_map_of(arm), kinematics_of(arm)
+    field, kinematics = model_of(arm).configuration_map(), kinematics_of(arm)
     middle = len(field.radii_mm) // 2
     radii, configurations = stretched_to_edges(kinematics, field.radii_mm[middle : middle + 1], field.home[None])
     assert radii[-1] - radii[0] > 100 * COARSE_STEP_MM
@@ -103,7 +101,7 @@ def test_the_file_of_a_known_arm_is_that_arm(tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", CanvasKind)
 def test_every_canvas_of_every_arm_is_finite_and_in_reach(name: str, kind: CanvasKind) -> None:
     arm = load_once(name)
-    canvas = canvas_of(arm, kind, arm.pen.lift_mm)
+    canvas = canvas_of(model_of(arm), kind, arm.pen.lift_mm)
     longest = sum(abs(joint.a_mm) + abs(joint.d_mm) for joint in arm.joints) + sum(
         joint.maximum for joint in arm.joints if joint.file_unit == "mm"
     )
@@ -114,7 +112,7 @@ def test_every_canvas_of_every_arm_is_finite_and_in_reach(name: str, kind: Canva
 def test_an_arm_with_fewer_joints_than_a_pen_needs_is_told_so() -> None:
     arm = load_once("six_joint")
     with pytest.raises(PlanError, match=r"takes \d joints that move by themselves, and it has 2"):
-        configuration_map_of(replace(arm, joints=arm.joints[:2]))
+        model_of(replace(arm, joints=arm.joints[:2])).configuration_map()
 
 
 _REFUSALS = {
@@ -139,7 +137,7 @@ def test_an_arm_without_a_configuration_is_told_what_most_of_them_lack(cause: st
     change, said = _REFUSALS[cause]
     arm = load_once("drawing_arm")
     with pytest.raises(PlanError, match=said):
-        configuration_map_of(replace(arm, joints=tuple(map(change, arm.joints))))
+        model_of(replace(arm, joints=tuple(map(change, arm.joints)))).configuration_map()
 
 
 def test_a_pen_that_never_points_down_is_told_so() -> None:
@@ -149,7 +147,7 @@ def test_a_pen_that_never_points_down_is_told_so() -> None:
     if axis < 0:
         upwards = replace(upwards, pen=replace(upwards.pen, tool_axis=(0.0, 0.0, -1.0)))
     with pytest.raises(PlanError, match="tool_axis never points down"):
-        configuration_map_of(upwards)
+        model_of(upwards).configuration_map()
 
 
 @settings(max_examples=6)
@@ -161,18 +159,18 @@ def test_any_weights_leave_a_course_that_a_pen_can_follow(
     name: str, weights: tuple[float, float, float, float]
 ) -> None:
     arm = load_once(name)
-    canvas = canvas_of(arm, CanvasKind.USABLE, arm.pen.lift_mm)
+    canvas = canvas_of(model_of(arm), CanvasKind.USABLE, arm.pen.lift_mm)
     x0, x1, y0, y1 = canvas.near_mm + 3, canvas.far_mm - 3, canvas.right_mm + 3, canvas.left_mm - 3
     strokes = [np.array([[x0, 0.0], [x1, 0.1]]), np.array([[x0, y0], [x1, y1], [x1, y0]])]
-    _, infeasible_paths = joint_paths(arm, Method.PATH, smooth_paths(strokes, 0.025), ConfigurationWeights(*weights))
+    references = references_for(arm, Method.PATH, ConfigurationWeights(*weights))
+    _, infeasible_paths = joint_paths(kinematics_of(arm), references, smooth_paths(strokes, 0.025))
     assert not infeasible_paths
 
 
 def test_weights_without_a_price_on_motion_do_not_jump() -> None:
     arm = load_once("scara")
-    canvas = canvas_of(arm, CanvasKind.USABLE, arm.pen.lift_mm)
+    canvas = canvas_of(model_of(arm), CanvasKind.USABLE, arm.pen.lift_mm)
     strokes = [np.array([[canvas.near_mm + 3, 0.0], [canvas.far_mm - 3, canvas.left_mm - 3]])]
-    _, infeasible_paths = joint_paths(
-        arm, Method.PATH, smooth_paths(strokes, 0.025), ConfigurationWeights(0.0, 1.0, 0.0, 0.0)
-    )
+    references = references_for(arm, Method.PATH, ConfigurationWeights(0.0, 1.0, 0.0, 0.0))
+    _, infeasible_paths = joint_paths(kinematics_of(arm), references, smooth_paths(strokes, 0.025))
     assert not infeasible_paths

@@ -23,13 +23,14 @@ from planner.comparison.targets import TargetKind, Targets, random_targets, sing
 from planner.errors import TargetBeyondReach
 from planner.kinematics.frame_jacobian import chain_frames
 from planner.settings import ConfigurationWeights, PlanSettings
-from tests.arms.chains import load_once, tips_by_product
+from tests.arms.chains import kinematics_of, load_once, model_of, tips_by_product
 
 NAMES = ["dls", "dls-drawing", "nlp", "closed-form", "path"]
 
 
 def compared(arm: Arm, targets: Targets) -> Comparison:
-    return compare(arm, targets, default_start(arm, targets.kind), PlanSettings(arm=arm.name), lambda *_: None)
+    model, settings = model_of(arm), PlanSettings(arm=arm.name)
+    return compare(model, targets, default_start(model, targets.kind), settings, lambda *_: None)
 
 
 def single(*place_mm: float) -> Targets:
@@ -39,7 +40,7 @@ def single(*place_mm: float) -> Targets:
 @pytest.mark.parametrize("name", known_arms())
 def test_all_methods_on_random_targets(name: str) -> None:
     arm = load_once(name)
-    comparison = compared(arm, random_targets(arm, 20, 3))
+    comparison = compared(arm, random_targets(kinematics_of(arm), 20, 3))
     assert [result.method.name for result in comparison.results] == NAMES
     for result in comparison.results:
         if result.method.name == "closed-form" and arm.closed_form is None:
@@ -116,8 +117,8 @@ def assert_readable(comparison: Comparison) -> None:
 
 def test_broken_limits_are_counted_and_the_recount_sees_them() -> None:
     whole = load_once("scara")
-    targets = random_targets(whole, 20, 3)
-    found = measure(METHODS[1], whole, ConfigurationWeights(), targets, default_start(whole, targets.kind))
+    targets = random_targets(kinematics_of(whole), 20, 3)
+    found = measure(METHODS[1], whole, ConfigurationWeights(), targets, default_start(model_of(whole), targets.kind))
     first, second, *rest = whole.joints
     half = replace(second, maximum=float(np.median(found.joints[:, 1])))
     arm = replace(whole, joints=(first, half, *rest))
@@ -157,12 +158,14 @@ def test_a_target_out_of_reach_is_named_with_its_gap() -> None:
 
 def test_default_starts() -> None:
     arm = load_once("drawing_arm")
-    np.testing.assert_allclose(np.degrees(default_start(arm, TargetKind.RANDOM)), [0, 60, -40, -50, -60])
-    home = default_start(arm, TargetKind.DRAWING)
+    np.testing.assert_allclose(np.degrees(default_start(model_of(arm), TargetKind.RANDOM)), [0, 60, -40, -50, -60])
+    home = default_start(model_of(arm), TargetKind.DRAWING)
     assert (home >= arm.minimum).all() and (home <= arm.maximum).all()
     assert tips_by_product(arm, home[None])[0, 2] == pytest.approx(0.0, abs=1e-6)
     lifted = replace(load_once("scara"), workspace=replace(arm.workspace, inner_radius_mm=5000.0))  # no home
-    np.testing.assert_allclose(default_start(lifted, TargetKind.SINGLE), (lifted.minimum + lifted.maximum) / 2)
+    np.testing.assert_allclose(
+        default_start(model_of(lifted), TargetKind.SINGLE), (lifted.minimum + lifted.maximum) / 2
+    )
 
 
 def test_a_method_that_the_arm_has_not_does_not_end_the_comparison() -> None:
@@ -184,7 +187,7 @@ def test_cold_is_building_and_the_first_target_and_warm_is_the_quickest_run() ->
         arm,
         ConfigurationWeights(),
         targets,
-        default_start(arm, targets.kind),
+        default_start(model_of(arm), targets.kind),
         clock=lambda: float(next(ticks)),
     )
     assert found.cold_s == 1.0 and found.warm_s == 0.5

@@ -12,7 +12,7 @@ from planner.cli import main
 from planner.comparison.drawing_time import stroke_times
 from planner.pipeline import placed_strokes, plan
 from planner.settings import Method, PlanSettings
-from tests.arms.chains import load_once
+from tests.arms.chains import load_once, model_of
 
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20">
 <g fill="none" stroke="black" stroke-linecap="round"><path d="M4 4 12 16 20 4M24 4q6 14 12 0"/>
@@ -51,7 +51,7 @@ def test_a_drawing_end_to_end(drawing: Path, capsys: pytest.CaptureFixture[str])
 def test_strokes_that_a_method_is_refused_are_counted_with_the_reason() -> None:
     arm = load_once("scara")
     inside, outside = np.array([[120.0, 0.0], [130.0, 10.0]]), np.array([[190.0, 0.0], [280.0, 0.0]])
-    times = stroke_times(arm, [inside, outside, inside], PlanSettings(arm="scara"))
+    times = stroke_times(model_of(arm), [inside, outside, inside], PlanSettings(arm="scara"))
     assert np.isnan(times.seconds).tolist() == [False, True, False]
     assert times.seconds[0] == times.seconds[2] > 0
     assert len(times.infeasible_paths) == 1
@@ -59,7 +59,7 @@ def test_strokes_that_a_method_is_refused_are_counted_with_the_reason() -> None:
 
 def test_a_drawing_is_placed_as_plan_places_it(drawing: Path) -> None:
     settings = PlanSettings(arm="scara", rotate_deg=90.0, margin_mm=20.0)
-    strokes, warnings = placed_strokes(drawing, load_once("scara"), settings)
+    strokes, warnings = placed_strokes(drawing, model_of(load_once("scara")), settings)
     trajectory = plan(drawing, settings, lambda *_: None).trajectory
     assert warnings == [] and len(strokes) == int(trajectory.stroke.max()) + 1
     a, b, c, d, e, f = trajectory.svg_to_arm_mm

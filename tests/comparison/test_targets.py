@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from planner.comparison import targets as module
 from planner.comparison.targets import TargetKind, random_targets, single_targets, targets_along
 from planner.errors import PlanError
-from tests.arms.chains import load_once
+from tests.arms.chains import kinematics_of, load_once
 
 POINTS = st.tuples(st.floats(-100, 100), st.floats(-100, 100))
 STROKES = st.lists(st.lists(POINTS, min_size=1, max_size=5).map(np.array), min_size=1, max_size=5)
@@ -46,14 +46,14 @@ def test_backwards_is_every_stroke_from_its_end_and_twice_is_as_before(strokes: 
 
 def test_random_targets_are_in_front_of_the_arm_on_the_paper_and_come_again_with_their_seed() -> None:
     arm = load_once("scara")
-    found = random_targets(arm, 30, 5)
+    found = random_targets(kinematics_of(arm), 30, 5)
     assert found.kind is TargetKind.RANDOM and found.tips_mm.shape == (30, 3)
     assert (found.tips_mm[:, 2] == 0).all() and (found.tips_mm[:, 0] >= 0).all()
     reach = sum(joint.a_mm for joint in arm.joints)
     radius = np.hypot(*found.tips_mm[:, :2].T)
     assert (radius >= arm.workspace.inner_radius_mm).all() and (radius <= reach).all() and np.ptp(radius) > reach / 3
-    np.testing.assert_array_equal(found.tips_mm, random_targets(arm, 30, 5).tips_mm)
-    assert not np.array_equal(found.tips_mm, random_targets(arm, 30, 6).tips_mm)
+    np.testing.assert_array_equal(found.tips_mm, random_targets(kinematics_of(arm), 30, 5).tips_mm)
+    assert not np.array_equal(found.tips_mm, random_targets(kinematics_of(arm), 30, 6).tips_mm)
     assert len(found.firsts) == 30 and found.backwards().firsts.tolist() == [0]
 
 
@@ -63,7 +63,7 @@ def test_an_arm_that_hardly_reaches_the_paper_has_no_random_targets(monkeypatch:
     )
     monkeypatch.setattr(module, "_MOST_DRAWS", 2)
     with pytest.raises(PlanError, match="of 8192 random configurations only 0"):
-        random_targets(load_once("scara"), 3, 0)
+        random_targets(kinematics_of(load_once("scara")), 3, 0)
 
 
 def test_single_targets_are_a_course_each() -> None:

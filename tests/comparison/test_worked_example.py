@@ -12,7 +12,7 @@ from planner.arms.arm_file import known_arms
 from planner.cli import main
 from planner.comparison.convergence import convergence
 from planner.comparison.worked_example import ERRATA, ITERATIONS, documented_start
-from tests.arms.chains import load_once
+from tests.arms.chains import kinematics_of, load_once
 
 HALF_A_DIGIT = 0.5e-4 * (1 + 1e-6)
 
@@ -93,14 +93,14 @@ def test_only_the_documented_arm_has_the_documented_start_and_prints() -> None:
     start = documented_start(arm)
     assert start is not None
     example = np.array([53.0, 47.8, 0.0])
-    assert convergence(arm, example, start).printed == ITERATIONS
-    assert convergence(arm, np.array([53.1, 47.8, 0.0]), start).printed == ()
-    assert convergence(arm, example, np.append(start[:1] + 0.01, start[1:])).printed == ()
+    assert convergence(kinematics_of(arm), example, start).printed == ITERATIONS
+    assert convergence(kinematics_of(arm), np.array([53.1, 47.8, 0.0]), start).printed == ()
+    assert convergence(kinematics_of(arm), example, np.append(start[:1] + 0.01, start[1:])).printed == ()
 
 
 def test_a_target_out_of_reach_never_converges() -> None:
     arm = load_once("drawing_arm")
     start = documented_start(arm)
     assert start is not None
-    found = convergence(arm, np.array([300.0, 0.0, 0.0]), start)
+    found = convergence(kinematics_of(arm), np.array([300.0, 0.0, 0.0]), start)
     assert not found.converged and len(found.steps) == 2001

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from planner.arrays import FloatArray
 from planner.drawing.drawing import Outline
-from planner.drawing.flatten import extent, flatten, flatten_all
+from planner.drawing.flatten import extent, flatten_all
 
 IDENTITY = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 coordinate = st.floats(-100, 100).map(lambda value: round(value, 3))
@@ -44,7 +44,7 @@ def on_curve(outline: Outline, affine: FloatArray, count: int = 400) -> FloatArr
 def test_polyline_and_curve_are_within_the_tolerance_both_ways(
     outline: Outline, affine: FloatArray, tolerance_mm: float
 ) -> None:
-    polyline = flatten(outline, affine, tolerance_mm)
+    polyline = flatten_all((outline,), affine, tolerance_mm)[0]
     curve = on_curve(outline, affine)
     if len(polyline) == 1:
         assert np.abs(curve - polyline[0]).max() <= tolerance_mm
@@ -61,7 +61,7 @@ def test_polyline_and_curve_are_within_the_tolerance_both_ways(
 
 @given(outlines(), affines)
 def test_polyline_starts_ends_and_never_repeats(outline: Outline, affine: FloatArray) -> None:
-    polyline = flatten(outline, affine, 0.05)
+    polyline = flatten_all((outline,), affine, 0.05)[0]
     ends = on_curve(outline, affine)[[0, -1]]
     assert np.allclose(polyline[[0, -1]], ends, atol=1e-9)
     assert np.all(np.any(np.diff(polyline, axis=0) != 0.0, axis=1))
@@ -72,7 +72,7 @@ def test_all_at_once_is_one_by_one(many: list[Outline], affine: FloatArray) -> N
     together = flatten_all(many, affine, 0.05)
     assert len(together) == len(many)
     for outline, polyline in zip(many, together, strict=True):
-        assert np.array_equal(polyline, flatten(outline, affine, 0.05))
+        assert np.array_equal(polyline, flatten_all((outline,), affine, 0.05)[0])
 
 
 def test_lines_stay_two_points_and_taps_one() -> None:
@@ -87,7 +87,7 @@ def test_a_circle_takes_about_the_fewest_chords() -> None:
     quarter = np.array([[1, 0], [1, k], [k, 1], [0, 1]]) * 20.0
     turn = np.array([[0, 1], [-1, 0]])
     circle = Outline(np.array([quarter, quarter @ turn, quarter @ turn @ turn, quarter @ turn @ turn @ turn]))
-    assert 45 <= len(flatten(circle, IDENTITY, 0.05)) - 1 <= 56
+    assert 45 <= len(flatten_all((circle,), IDENTITY, 0.05)[0]) - 1 <= 56
 
 
 @given(outlines(), affines)

@@ -13,13 +13,14 @@ from hypothesis import strategies as st
 
 from planner.arrays import FloatArray
 from planner.drawing.join import is_closed, join_strokes
-from planner.drawing.order import Metric, order_strokes, travel
+from planner.drawing.metric import Metric
+from planner.drawing.order import order_strokes, travel
 
 ORIGIN = np.zeros(2)
 grid = st.tuples(st.integers(0, 6), st.integers(0, 6))
 METRICS = [
     Metric(lambda points: points),
-    Metric(lambda points: np.column_stack([points[:, 0], 3.0 * points[:, 1], points.sum(axis=1)]), p=np.inf),
+    Metric(lambda points: np.column_stack([points[:, 0], 3.0 * points[:, 1], points.sum(axis=1)])),
     Metric(lambda points: points, exponent=1 / 3),
 ]
 

@@ -7,8 +7,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from planner.execution.work_chunks import PlanContext, StrokeChunk, TimedStroke, pieces_of, stroke_chunks, timed_strokes
+from planner.execution.context import PlanContext
+from planner.execution.work_chunks import StrokeChunk, pieces_of, stroke_chunks, timed_strokes
 from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
+from planner.motion.timed_stroke import TimedStroke
 from planner.placement.pieces import Piece
 from planner.settings import Method, PlanSettings
 from tests.arms.chains import load_once

@@ -10,9 +10,8 @@ import pytest
 
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
-from planner.inverse_kinematics.closed_forms.branches import within_limits
-from planner.inverse_kinematics.nlp import nlp_solver
-from planner.kinematics.chain import kinematics_of
+from planner.kinematics.limits import within_limits
+from tests.arms.chains import kinematics_of, solver_of
 from tests.inverse_kinematics.closed_forms.arms import NAMES, apart, arm_of, family, poses_of, redundancy_of
 
 COUNT = 200
@@ -40,7 +39,7 @@ def targets_with_starts(arm: Arm) -> tuple[FloatArray, FloatArray]:
             for joint in arm.joints
         ),
     )
-    inside = within_limits(roomy, branches) & ~branches.singular[:, None]
+    inside = within_limits(roomy, roomy.complete(branches.configurations)) & ~branches.singular[:, None]
     target, branch = np.nonzero(inside)
     chosen = rng.choice(len(target), COUNT, replace=False)
     target, branch = target[chosen], branch[chosen]
@@ -52,7 +51,7 @@ def targets_with_starts(arm: Arm) -> tuple[FloatArray, FloatArray]:
 @pytest.mark.parametrize("name", NAMES)
 def test_configurations_of_the_program_are_branches_of_the_closed_form(name: str) -> None:
     arm = arm_of(name)
-    solver = nlp_solver(arm)
+    solver = solver_of(arm)
     tips, starts = targets_with_starts(arm)
     solved = [solver.solve(tip, start) for tip, start in zip(tips, starts, strict=True)]
     converged = np.array([good for _, good, _, _ in solved])

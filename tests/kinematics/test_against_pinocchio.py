@@ -9,9 +9,8 @@ import pytest
 from planner.arms.arm import Arm, JointKind
 from planner.arms.arm_file import known_arms
 from planner.arrays import FloatArray
-from planner.kinematics.chain import kinematics_of
 from planner.kinematics.frame_jacobian import chain_frames, frame_jacobian
-from tests.arms.chains import load_once, random_configurations
+from tests.arms.chains import kinematics_of, load_once, random_configurations
 
 EXACT = 1e-9
 COUNT = 40

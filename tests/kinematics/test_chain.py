@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Workspace
-from planner.kinematics.chain import Kinematics, kinematics_of
-from tests.arms.chains import chains, dh_frames, load_once, random_configurations, tips_by_product
+from planner.kinematics.chain import Kinematics
+from tests.arms.chains import chains, dh_frames, kinematics_of, load_once, random_configurations, tips_by_product
 
 SEEDS = st.integers(0, 2**32 - 1)
 built_anew = settings(max_examples=30, deadline=None)  # each example compiles a chain

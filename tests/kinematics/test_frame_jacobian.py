@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from planner.arms.arm import Arm
 from planner.errors import UsageError
-from planner.kinematics.chain import kinematics_of
 from planner.kinematics.frame_jacobian import chain_frames, frame_jacobian
-from tests.arms.chains import chains, dh_frames, load_once
+from tests.arms.chains import chains, dh_frames, kinematics_of, load_once
 
 SEEDS = st.integers(0, 2**32 - 1)
 

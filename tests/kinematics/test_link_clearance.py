@@ -14,11 +14,9 @@ from planner.arrays import FloatArray
 from planner.checking.chain import chain_poses
 from planner.checking.links import Capsules
 from planner.errors import PlanError
-from planner.kinematics.chain import kinematics_of
-from planner.kinematics.link_clearance import KEPT_MM, LinkClearance, segment_distance
-from planner.redundancy.configuration_map import configuration_map_of
+from planner.kinematics.link_clearance import KEPT_MM, segment_distance
 from planner.redundancy.configuration_tests import LINK_CLEARANCE_MM
-from tests.arms.chains import chains, load_once, random_configurations, thick
+from tests.arms.chains import chains, kinematics_of, load_once, model_of, random_configurations, thick
 
 _COORDINATES = st.one_of(st.sampled_from([0.0, 10.0, -10.0]), st.floats(-50, 50))
 _POINTS = st.tuples(_COORDINATES, _COORDINATES, _COORDINATES).map(np.array)
@@ -38,16 +36,16 @@ def test_segments_are_as_far_apart_as_their_closest_points(
 
 
 def folded(arm: Arm, *degrees: float) -> tuple[float, tuple[str, str]]:
-    clearance = LinkClearance(arm)
+    clearance = kinematics_of(arm).clearance
     clearances, which = clearance.least_mm(kinematics_of(arm).independent_of(np.radians([degrees])))
     return float(clearances[0]), clearance.names[which[0]] if clearance.names else ("", "")
 
 
 def test_without_thickness_nothing_collides() -> None:
     arm = load_once("drawing_arm")
-    clearances, _ = LinkClearance(arm).least_mm(random_configurations(arm, 1, 50))
+    clearances, _ = kinematics_of(arm).clearance.least_mm(random_configurations(arm, 1, 50))
     assert np.isinf(clearances).all()
-    assert LinkClearance(arm).collisions([np.zeros((3, 5))]) == [None]
+    assert kinematics_of(arm).clearance.collisions([np.zeros((3, 5))]) == [None]
 
 
 def test_capsules_that_touch_have_no_clearance() -> None:
@@ -106,14 +104,14 @@ def test_the_check_finds_the_same_clearance_by_its_own_mathematics(
     wanted = capsules.lowest_mm(poses)
     if capsules.pair_names:
         wanted = np.minimum(wanted, capsules.clearances(poses)[0])
-    np.testing.assert_allclose(LinkClearance(arm).least_mm(independent)[0], wanted, atol=1e-6)
+    np.testing.assert_allclose(kinematics_of(arm).clearance.least_mm(independent)[0], wanted, atol=1e-6)
 
 
 @settings(deadline=None, max_examples=40)
 @given(seed=st.integers(0, 2**32 - 1), turn=st.floats(-3, 3))
 def test_turning_the_arm_changes_nothing(seed: int, turn: float) -> None:
     arm = thick(load_once("drawing_arm"))
-    clearance = LinkClearance(arm)
+    clearance = kinematics_of(arm).clearance
     independent = random_configurations(arm, seed, 5)
     (here, _), (there, _) = (clearance.least_mm(independent + first * turn) for first in (0.0, np.eye(4)[0]))
     np.testing.assert_allclose(there, here, atol=1e-9)
@@ -122,7 +120,7 @@ def test_turning_the_arm_changes_nothing(seed: int, turn: float) -> None:
 def test_the_worst_of_a_sequence_is_told() -> None:
     arm = thick(load_once("drawing_arm"), q3=20.0, q4=20.0)
     fold = np.radians([[0, 90, 0, angle, -180 - angle] for angle in (-140.0, -165.0, -150.0)])
-    clear, collides = LinkClearance(arm).collisions([fold[:1], fold])
+    clear, collides = kinematics_of(arm).clearance.collisions([fold[:1], fold])
     assert clear is None and collides is not None
     assert (collides.configuration, collides.links) == (1, ("link q3", "link q4"))
     assert str(collides) == "there would be -7.06 mm between link q3 and link q4"
@@ -131,8 +129,8 @@ def test_the_worst_of_a_sequence_is_told() -> None:
 
 def test_the_field_of_a_thick_arm_keeps_its_links_apart() -> None:
     arm = thick(load_once("drawing_arm"))
-    clearance = LinkClearance(arm)
-    thin, field = configuration_map_of(load_once("drawing_arm")), configuration_map_of(arm)
+    clearance = kinematics_of(arm).clearance
+    thin, field = model_of(load_once("drawing_arm")).configuration_map(), model_of(arm).configuration_map()
     assert clearance.least_mm(thin.configurations)[0].min() < -5.0  # what it is there for
     radii = np.linspace(field.radii_mm[0], field.radii_mm[-1], 1000)
     independent, good = field.configurations_at(np.column_stack((radii, np.zeros((1000, 2)))))
@@ -143,4 +141,4 @@ def test_the_field_of_a_thick_arm_keeps_its_links_apart() -> None:
 def test_an_arm_too_thick_to_draw_is_told_so() -> None:
     arm = thick(load_once("three_joint"), q1=119.0, q2=119.0, q3=119.0)
     with pytest.raises(PlanError, match=r"bring links too close to each other.*check thickness_mm"):
-        configuration_map_of(arm)
+        model_of(arm).configuration_map()

@@ -7,9 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planner.arms.arm import Arm
-from planner.kinematics.chain import kinematics_of
 from planner.kinematics.projection import RESIDUAL_MM, joint_scale, project
-from tests.arms.chains import DRAWING_ARMS, load_once, reachable_configurations, tips_by_product
+from tests.arms.chains import DRAWING_ARMS, kinematics_of, load_once, reachable_configurations, tips_by_product
 
 ARMS = st.sampled_from(DRAWING_ARMS).map(load_once)
 SEEDS = st.integers(0, 2**32 - 1)

@@ -23,8 +23,8 @@ def test_a_chord_as_long_as_the_cap_allows_cuts_no_more_than_the_chord_error(tur
     corners = np.cumsum(lengths[:, None] * np.column_stack((np.cos(heading), np.sin(heading))), axis=0)
     paths = smooth_paths([np.vstack(([0.0, 0.0], corners))], 0.025)
     cap = rate_limit(paths, np.zeros(1), _SPEED_MM_S, _CHORD_ERROR_MM, _RATE_HZ)[:, 0]
-    slope = np.hypot(*paths.points(np.zeros(1), 1)[:, 0].T)
-    way = paths.points(np.linspace(0, 1, _FINE, endpoint=False)).reshape(-1, 2)
+    slope = np.hypot(*paths.positions(np.zeros(1), 1)[:, 0].T)
+    way = paths.positions(np.linspace(0, 1, _FINE, endpoint=False)).reshape(-1, 2)
     along_mm = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))))
     line = shapely.LineString(way)
     for cell in np.flatnonzero(slope > 0.0).tolist():  # at the very start the pen rests

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from planner.arrays import FloatArray
-from planner.placement.pen_path import DEGREE, PenPaths, smooth_paths
+from planner.placement.pen_path import PenPaths, smooth_paths
+from planner.spline_paths import DEGREE
 
 TOLERANCE_MM = 0.02
 
@@ -23,7 +24,7 @@ def curve_of(paths: PenPaths, index: int) -> BSpline[np.float64]:
     first = int((paths.n_cells[:index] + DEGREE).sum())
     n_cells = int(paths.n_cells[index])
     knots = np.arange(-DEGREE, n_cells + DEGREE + 1, dtype=np.float64)
-    return BSpline(knots, paths.controls_mm[first : first + n_cells + DEGREE], DEGREE, extrapolate=False)
+    return BSpline(knots, paths.controls[first : first + n_cells + DEGREE], DEGREE, extrapolate=False)
 
 
 def traced(paths: PenPaths, index: int, per_cell: int = 24) -> FloatArray:
@@ -142,7 +143,7 @@ def test_derivatives_are_continuous_to_the_fourth_and_are_those_of_the_spline() 
     for index, n_cells in enumerate(paths.n_cells.tolist()):
         curve = curve_of(paths, index)
         for order in range(DEGREE):
-            ends = paths.points(np.array([0.0, 1.0]), order)[begin : begin + n_cells]
+            ends = paths.positions(np.array([0.0, 1.0]), order)[begin : begin + n_cells]
             np.testing.assert_allclose(ends[:-1, 1], ends[1:, 0], atol=1e-11)
             np.testing.assert_allclose(ends[1:, 0], curve.derivative(order)(np.arange(1, n_cells)), atol=1e-10)
         begin += n_cells

@@ -16,20 +16,20 @@ from planner.errors import UsageError
 from planner.plots.comparison import plot_comparison
 from planner.plots.comparison_look import shown
 from planner.settings import PlanSettings
-from tests.arms.chains import load_once, tips_by_product
+from tests.arms.chains import kinematics_of, load_once, model_of, tips_by_product
 
 STROKES = [np.array([[120.0, 20.0], [120.0, 24.0]]), np.array([[110.0, -10.0], [113.0, -10.0]])]
 
 
 @lru_cache
 def compared(name: str, kind: str) -> Comparison:
-    arm = load_once(name)
+    arm, model = load_once(name), model_of(load_once(name))
     targets: Targets = {
         "single": lambda: single_targets(np.array([[53.0, 47.8, 0.0]])),
-        "random": lambda: random_targets(arm, 12, 1),
+        "random": lambda: random_targets(kinematics_of(arm), 12, 1),
         "drawing": lambda: targets_along(STROKES),
     }[kind]()
-    return compare(arm, targets, default_start(arm, targets.kind), PlanSettings(arm=name), lambda *_: None)
+    return compare(model, targets, default_start(model, targets.kind), PlanSettings(arm=name), lambda *_: None)
 
 
 def lines(axes: Axes, label: str) -> np.ndarray:

@@ -9,9 +9,9 @@ from matplotlib.collections import QuadMesh
 from planner.arms.arm_file import load_arm
 from planner.kinematics.sensitivity import sideways_error
 from planner.plots.workspace import plot_workspace
-from planner.redundancy.configuration_map import configuration_map_of
 from planner.settings import CanvasKind
 from planner.workspace.paper_map import paper_map
+from tests.arms.chains import model_of
 
 SCARA = load_arm("scara")
 CANVASES_MM = {
@@ -25,7 +25,7 @@ CANVASES_MM = {
 
 
 def test_figures_are_those_of_the_configurations_the_arm_draws_with() -> None:
-    figures = paper_map(SCARA)
+    figures = paper_map(model_of(SCARA))
     kept = np.isfinite(figures.manipulability)
     assert 0.5 < kept.mean() < 1.0  # the shoulder's limit is in the way on one side
     np.testing.assert_array_equal(kept, np.isfinite(figures.sideways_error_mm))
@@ -34,12 +34,12 @@ def test_figures_are_those_of_the_configurations_the_arm_draws_with() -> None:
     cosine = (radius**2 - a1**2 - a2**2) / (2 * a1 * a2)
     np.testing.assert_allclose(figures.manipulability[kept], a1 * a2 * np.sqrt(1 - cosine[kept] ** 2), rtol=1e-6)
     places = np.column_stack((figures.x_mm[kept], figures.y_mm[kept], np.zeros(kept.sum())))[::97]
-    configurations, _ = configuration_map_of(SCARA).configurations_at(places)
+    configurations, _ = model_of(SCARA).configuration_map().configurations_at(places)
     np.testing.assert_allclose(figures.sideways_error_mm[kept][::97], sideways_error(SCARA, configurations), rtol=1e-9)
 
 
 def test_both_maps_show_figures_ring_canvas_and_base_seen_from_behind_the_base() -> None:
-    figures = paper_map(SCARA)
+    figures = paper_map(model_of(SCARA))
     figure = plot_workspace("scara", figures, CANVASES_MM, (60.0, 198.0))
     ring, *maps = [axes for axes in figure.axes if axes.get_xlabel() == "arm y (mm)"]
     assert len(maps) == 2

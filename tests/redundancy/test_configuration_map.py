@@ -14,12 +14,11 @@ from planner.arms.arm import Arm, Coupling, JointKind
 from planner.arms.arm_file import arms_folder, load_arm
 from planner.arrays import FloatArray
 from planner.errors import ArmFileError, PlanError
-from planner.kinematics.chain import kinematics_of
+from planner.kinematics.limits import within_limits
 from planner.kinematics.projection import project
 from planner.kinematics.quickest_lift import quickest_lifts
-from planner.redundancy.configuration_map import configuration_map_of, within_limits
 from planner.redundancy.configuration_tests import slowest_direction_mm_s
-from tests.arms.chains import DRAWING_ARMS, load_once, tips_by_product
+from tests.arms.chains import DRAWING_ARMS, kinematics_of, load_once, model_of, tips_by_product
 
 ARMS = st.sampled_from(DRAWING_ARMS).map(load_once)
 
@@ -31,13 +30,13 @@ def on_ray(radii_mm: FloatArray, azimuth_rad: float = 0.0, height_mm: float = 0.
 
 
 def ray_of(arm: Arm, count: int) -> FloatArray:
-    configuration_map = configuration_map_of(arm)
+    configuration_map = model_of(arm).configuration_map()
     return np.linspace(configuration_map.radii_mm[0], configuration_map.radii_mm[-1], count)
 
 
 def test_configurations_put_the_pen_on_the_paper_within_all_limits(arm: Arm) -> None:
     tips = on_ray(ray_of(arm, 300), azimuth_rad=-0.2)
-    independent, good = configuration_map_of(arm).configurations_at(tips)
+    independent, good = model_of(arm).configuration_map().configurations_at(tips)
     joints = arm.complete(independent)
     assert good.all()
     assert ((joints >= arm.minimum) & (joints <= arm.maximum)).all()
@@ -46,7 +45,7 @@ def test_configurations_put_the_pen_on_the_paper_within_all_limits(arm: Arm) -> 
 
 def test_references_are_close_to_exact_already(arm: Arm) -> None:
     tips = on_ray(ray_of(arm, 300))
-    assert np.abs(kinematics_of(arm).tip_mm(configuration_map_of(arm).reference(tips)) - tips).max() < 1e-3
+    assert np.abs(kinematics_of(arm).tip_mm(model_of(arm).configuration_map().reference(tips)) - tips).max() < 1e-3
 
 
 @settings(deadline=None, max_examples=50)
@@ -54,7 +53,7 @@ def test_references_are_close_to_exact_already(arm: Arm) -> None:
 def test_turning_the_target_turns_the_base_and_nothing_else(
     arm: Arm, share: float, azimuth: float, turn: float, height: float
 ) -> None:
-    configuration_map = configuration_map_of(arm)
+    configuration_map = model_of(arm).configuration_map()
     radius = np.array(
         [configuration_map.radii_mm[0] + share * (configuration_map.radii_mm[-1] - configuration_map.radii_mm[0])]
     )
@@ -67,7 +66,7 @@ def test_the_configuration_path_is_smooth_along_the_radius(arm: Arm) -> None:
     """Steps and bends of the joints. Towards a stretched arm they grow as those of a square root, hence the room."""
     radii = ray_of(arm, 1000)
     step = radii[1] - radii[0]
-    independent, _ = configuration_map_of(arm).configurations_at(on_ray(radii))
+    independent, _ = model_of(arm).configuration_map().configurations_at(on_ray(radii))
     slope, bend = np.diff(independent, axis=0) / step, np.diff(independent, 2, axis=0) / step**2
     assert np.abs(slope).max() < 0.1  # rad/mm
     inner = radii[2:] < radii[-1] - 5.0
@@ -77,7 +76,7 @@ def test_the_configuration_path_is_smooth_along_the_radius(arm: Arm) -> None:
 
 
 def test_the_field_ends_where_configurations_stop_being_usable(arm: Arm) -> None:
-    configuration_map, kinematics = configuration_map_of(arm), kinematics_of(arm)
+    configuration_map, kinematics = model_of(arm).configuration_map(), kinematics_of(arm)
     room = 0.02 * (arm.maximum - arm.minimum)
 
     def usable(radius_mm: float, reference: FloatArray) -> bool:
@@ -101,24 +100,23 @@ def test_the_field_ends_where_configurations_stop_being_usable(arm: Arm) -> None
     assert not usable(configuration_map.radii_mm[0] - 0.5, configuration_map.configurations[0])
 
 
-def test_limits_are_those_of_all_joints_or_of_all_but_the_first(arm: Arm) -> None:
-    independent, _ = configuration_map_of(arm).configurations_at(on_ray(ray_of(arm, 3)))
+def test_limits_are_those_of_all_joints(arm: Arm) -> None:
+    independent, _ = model_of(arm).configuration_map().configurations_at(on_ray(ray_of(arm, 3)))
     turned = independent + np.array([arm.maximum[0] - independent[0, 0] + 0.01, 0.0, 0.0, 0.0])
-    assert within_limits(arm, independent).all()
-    assert not within_limits(arm, turned[:1]).any()
-    assert within_limits(arm, turned, first_joint=False).all()
+    assert within_limits(arm, arm.complete(independent)).all()
+    assert not within_limits(arm, arm.complete(turned[:1])).any()
     low = independent.copy()
     low[:, 1] = arm.minimum[1] - 1e-3
-    assert not within_limits(arm, low, first_joint=False).any()
+    assert not within_limits(arm, arm.complete(low)).any()
 
 
 def test_targets_beyond_reach_are_told(arm: Arm) -> None:
-    _, good = configuration_map_of(arm).configurations_at(on_ray(np.array([160.0, 400.0])))
+    _, good = model_of(arm).configuration_map().configurations_at(on_ray(np.array([160.0, 400.0])))
     assert not good.any()
 
 
 def test_the_same_arm_has_the_same_configuration_map() -> None:
-    one, other = (configuration_map_of(load_arm("drawing_arm")) for _ in range(2))
+    one, other = (model_of(load_arm("drawing_arm")).configuration_map() for _ in range(2))
     np.testing.assert_array_equal(one.radii_mm, other.radii_mm)
     np.testing.assert_array_equal(one.configurations, other.configurations)
 
@@ -127,13 +125,13 @@ def test_an_arm_that_cannot_have_a_field_is_told_why() -> None:
     arm = load_once("drawing_arm")
     sliding = replace(arm, joints=(replace(arm.joints[0], kind=JointKind.PRISMATIC), *arm.joints[1:]))
     with pytest.raises(PlanError, match="turns about the vertical"):
-        configuration_map_of(sliding)
+        model_of(sliding).configuration_map()
     leaning = replace(arm, couplings=(Coupling(4, -np.pi / 2, ((0, 0.5), (1, -1.0), (2, -1.0), (3, -1.0))),))
     with pytest.raises(PlanError, match="coupling"):
-        configuration_map_of(leaning)
+        model_of(leaning).configuration_map()
     raised = replace(arm, joints=(replace(arm.joints[0], d_mm=300.0), *arm.joints[1:]))
     with pytest.raises(PlanError, match="none gets there, joint limits aside; check d_mm"):
-        configuration_map_of(raised)
+        model_of(raised).configuration_map()
 
 
 @pytest.mark.parametrize(
@@ -146,4 +144,4 @@ def test_a_coupling_that_leaves_the_pen_tilted_is_refused(tmp_path: Path, edit: 
     file = tmp_path / "tilted.toml"
     file.write_text(text.replace(*edit), encoding="utf-8")
     with pytest.raises(ArmFileError, match="degrees from straight down"):
-        configuration_map_of(load_arm(str(file)))
+        model_of(load_arm(str(file))).configuration_map()

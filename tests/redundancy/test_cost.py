@@ -7,11 +7,10 @@ import pytest
 
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
-from planner.kinematics.chain import kinematics_of
-from planner.redundancy.configuration_map import ConfigurationMap, configuration_map_of
+from planner.redundancy.configuration_map import ConfigurationMap
 from planner.redundancy.cost import ConfigurationCost
 from planner.settings import ConfigurationWeights
-from tests.arms.chains import load_once
+from tests.arms.chains import kinematics_of, load_once, model_of
 
 TIME, SENSITIVITY, LIMITS = (
     ConfigurationWeights(1, 0, 0, 0.1),
@@ -46,13 +45,16 @@ def sideways(configuration_map: ConfigurationMap) -> FloatArray:
 
 
 def test_time_makes_the_fastest_joint_slower(arm: Arm) -> None:
-    assert slopes(configuration_map_of(arm, TIME)).mean() < 0.95 * slopes(configuration_map_of(arm, SENSITIVITY)).mean()
+    assert (
+        slopes(model_of(arm).configuration_map(TIME)).mean()
+        < 0.95 * slopes(model_of(arm).configuration_map(SENSITIVITY)).mean()
+    )
 
 
 def test_sensitivity_makes_the_tip_steadier(arm: Arm) -> None:
     assert (
-        sideways(configuration_map_of(arm, SENSITIVITY)).mean()
-        < 0.97 * sideways(configuration_map_of(arm, TIME)).mean()
+        sideways(model_of(arm).configuration_map(SENSITIVITY)).mean()
+        < 0.97 * sideways(model_of(arm).configuration_map(TIME)).mean()
     )
 
 
@@ -61,7 +63,7 @@ def test_limits_keep_configurations_nearer_the_middle_of_their_ranges(arm: Arm) 
         joints = arm.complete(configuration_map.configurations)
         return float((((joints - (arm.maximum + arm.minimum) / 2) / (arm.maximum - arm.minimum)) ** 2).mean())
 
-    assert spread(configuration_map_of(arm, LIMITS)) < spread(configuration_map_of(arm, SENSITIVITY))
+    assert spread(model_of(arm).configuration_map(LIMITS)) < spread(model_of(arm).configuration_map(SENSITIVITY))
 
 
 def slopes_that_cost(arm: Arm, weights: ConfigurationWeights, *speeds: float) -> float:
@@ -89,7 +91,9 @@ def test_reversals_let_a_joint_rest(arm: Arm) -> None:
     def resting(weights: ConfigurationWeights) -> float:
         radii = np.linspace(40.0, 140.0, 400)
         joints = arm.complete(
-            configuration_map_of(arm, weights).configurations_at(np.column_stack((radii, np.zeros((len(radii), 2)))))[0]
+            model_of(arm)
+            .configuration_map(weights)
+            .configurations_at(np.column_stack((radii, np.zeros((len(radii), 2)))))[0]
         )[:, 1:]
         slowest = np.degrees(np.abs(np.gradient(joints, radii, axis=0)).min(axis=1))
         return float((slowest < 0.01).mean())

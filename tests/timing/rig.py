@@ -8,10 +8,11 @@ import numpy as np
 from scipy.interpolate import BSpline, PPoly
 
 from planner.arrays import FloatArray
-from planner.inverse_kinematics.joint_path import DEGREE, JointPaths, interpolate
+from planner.inverse_kinematics.joint_path import JointPaths, interpolate
+from planner.kinematics.limits import Limits
 from planner.motion.stroke_motion import StrokeMotions, motions
 from planner.placement.pen_path import smooth_paths
-from planner.timing.limits import Limits
+from planner.spline_paths import DEGREE
 from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
@@ -30,7 +31,7 @@ LINES = {
 def polar_paths(lines: list[FloatArray]) -> JointPaths:
     """Joint paths of a turning and a sliding joint that draw the lines (mm): azimuth in rad and radius in cm."""
     pen = smooth_paths(lines, 0.0225)
-    corners = pen.points(np.array([0.0, 1.0]))
+    corners = pen.positions(np.array([0.0, 1.0]))
     ends = np.cumsum(pen.n_cells)
     x, y = np.insert(corners[:, 0], ends, corners[ends - 1, 1], axis=0).T
     return interpolate(pen.n_cells, np.column_stack((np.arctan2(y, x), np.hypot(x, y) / 10)))

@@ -14,7 +14,7 @@ from scipy.optimize import linprog
 from scipy.sparse import csr_array, diags_array, eye_array, hstack, vstack
 
 from planner.arrays import FloatArray
-from planner.timing.limits import Limits
+from planner.kinematics.limits import Limits
 
 Derivative = Callable[[FloatArray, int], FloatArray]
 """sigma (n,) and an order 1, 2 or 3 to derivatives (n, n_joints) of a joint path."""

@@ -10,7 +10,7 @@ from scipy.interpolate import BSpline
 
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import JointPaths
-from planner.timing.limits import Limits
+from planner.kinematics.limits import Limits
 from planner.travel.ruckig_profile import rest_to_rest
 from tests.timing.rig import LIMITS, joint_curve, polar_paths, rate_curve, rates_by_formula, timed
 from tests.timing.slp import least_time_s

@@ -13,8 +13,8 @@ from scipy.interpolate import BSpline
 
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.joint_path import JointPaths
+from planner.kinematics.limits import Limits
 from planner.motion.stroke_motion import motions
-from planner.timing.limits import Limits
 from planner.timing.path_timing import minimum_time
 from planner.travel.ruckig_profile import rest_to_rest
 from tests.timing.rig import (
@@ -70,7 +70,7 @@ def test_limits_hold_between_the_samples(line: FloatArray) -> None:
     """By differences of positions, at the rate of the samples and at ten times that."""
     motion = timed(polar_paths([line]))
     for times in (1, 10):
-        samples = seen_often(motion, times).sample(0)
+        samples = seen_often(motion, times).samples()[0]
         assert (share_of_limits(samples, 0.01 / times) <= 1.002).all()
 
 
@@ -79,7 +79,7 @@ def test_limits_hold_between_the_samples(line: FloatArray) -> None:
 def test_samples_begin_and_end_at_rest_at_the_ends_of_the_path(line: FloatArray) -> None:
     paths = polar_paths([line])
     motion = timed(paths)
-    samples = motion.sample(0)
+    samples = motion.samples()[0]
     curve = joint_curve(paths, 0)
     assert len(samples) == motion.n_periods[0] + 1
     np.testing.assert_allclose(samples[[0, -1]], curve([0.0, float(paths.n_cells[0])]), atol=1e-12)
@@ -190,7 +190,7 @@ def test_motions_slow_a_path_that_is_too_fast_and_fill_whole_periods() -> None:
     coefficients = minimum_time(problem_of(paths)).rates
     fast, slow = 6.25 * coefficients, coefficients / 6.25
     best, hasty, easy = (motions(paths, b, LIMITS, 100.0) for b in (coefficients, fast, slow))
-    assert (share_of_limits(seen_often(hasty, 10).sample(0), 0.001) <= 1.002).all()
+    assert (share_of_limits(seen_often(hasty, 10).samples()[0], 0.001) <= 1.002).all()
     assert abs(int(hasty.n_periods[0]) - int(best.n_periods[0])) <= 1
     assert int(easy.n_periods[0]) >= 2.4 * int(best.n_periods[0])
     for motion in (best, hasty, easy):

@@ -12,12 +12,11 @@ from hypothesis import strategies as st
 
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
-from planner.kinematics.chain import kinematics_of
-from planner.redundancy.configuration_map import configuration_map_of
-from planner.timing.limits import Limits
+from planner.kinematics.limits import Limits
+from planner.motion.timed_stroke import Contact
 from planner.travel.ruckig_profile import NoSuchMove, between_states, rest_to_rest
-from planner.travel.travel_moves import Contact, TravelRules, plan_travel_moves
-from tests.arms.chains import load_once
+from planner.travel.travel_moves import TravelRules, plan_travel_moves
+from tests.arms.chains import kinematics_of, load_once, model_of
 from tests.timing.rig import share_of_limits
 
 RATE_HZ = 100.0
@@ -29,7 +28,7 @@ decades = st.floats(-1.5, 2.5).map(lambda decade: 10.0**decade)
 def touches_of(name: str) -> tuple[Contact, ...]:
     """Places about a centimetre and about five apart, in the middle of the arm's reach."""
     arm = load_once(name)
-    configuration_map = configuration_map_of(arm)
+    configuration_map = model_of(arm).configuration_map()
     for radius in np.linspace(arm.workspace.inner_radius_mm + 10.0, 300.0, 25):
         tips = np.array([[radius, 0.0], [radius + 3.0, 9.0], [radius + 3.2, 9.0], [radius, -40.0]])
         independent, good = configuration_map.configurations_at(np.column_stack((tips, np.zeros(len(tips)))))

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import PlanError
-from planner.redundancy.configuration_map import configuration_map_of
 from planner.settings import CanvasKind
 from planner.workspace.canvas import (
     Canvas,
@@ -23,7 +22,7 @@ from planner.workspace.canvas import (
     optimal_canvas,
     usable_canvas,
 )
-from tests.arms.chains import load_once, tips_by_product, variant
+from tests.arms.chains import load_once, model_of, tips_by_product, variant
 
 R_MAX_MM, R_MIN_MM = 150.0, 33.0
 RADII = st.tuples(st.floats(20, 100), st.floats(2.01, 6)).map(lambda pair: (pair[0] * pair[1], pair[0]))
@@ -50,10 +49,10 @@ def test_optimal_canvas_is_larger_by_the_known_share() -> None:
 
 def test_the_default_arm_has_both() -> None:
     arm = load_once("drawing_arm")
-    assert geometric_reach_mm(arm) == pytest.approx(R_MAX_MM, abs=1e-5)
+    assert geometric_reach_mm(model_of(arm)) == pytest.approx(R_MAX_MM, abs=1e-5)
     for kind, make in ((CanvasKind.DOCUMENTED, documented_canvas), (CanvasKind.OPTIMAL, optimal_canvas)):
         expected = make(R_MAX_MM, R_MIN_MM)
-        assert canvas_of(arm, kind, 5.0).corners_arm_mm == pytest.approx(expected.corners_arm_mm, abs=1e-4)
+        assert canvas_of(model_of(arm), kind, 5.0).corners_arm_mm == pytest.approx(expected.corners_arm_mm, abs=1e-4)
 
 
 @given(RADII)
@@ -99,16 +98,18 @@ def test_reach_shrinks_by_the_difference_of_first_and_last_link(
 ) -> None:
     l1, l2, l3, l4, l5 = lengths_mm
     arm = variant(tmp_path, lengths_mm)
-    assert geometric_reach_mm(arm) == pytest.approx(np.sqrt((l2 + l3 + l4) ** 2 - (l5 - l1) ** 2), abs=1e-4)
+    assert geometric_reach_mm(model_of(arm)) == pytest.approx(np.sqrt((l2 + l3 + l4) ** 2 - (l5 - l1) ** 2), abs=1e-4)
 
 
 def test_reach_of_the_arm_with_a_pen_beside_its_plane() -> None:
-    assert geometric_reach_mm(load_once("drawing_arm_2022")) == pytest.approx(np.sqrt(150**2 - 13**2 + 27**2), abs=1e-4)
+    assert geometric_reach_mm(model_of(load_once("drawing_arm_2022"))) == pytest.approx(
+        np.sqrt(150**2 - 13**2 + 27**2), abs=1e-4
+    )
 
 
 def drawable(arm: Arm, points_mm: FloatArray, lift_mm: float) -> BoolArray:
     """(n,) whether the map's configurations put the pen on points (n, 2) and lift it, by a product of matrices."""
-    configuration_map = configuration_map_of(arm)
+    configuration_map = model_of(arm).configuration_map()
     radius = np.hypot(*points_mm.T)
     good = (radius >= configuration_map.radii_mm[0] - 1e-9) & (radius <= configuration_map.radii_mm[-1] + 1e-9)
     for height in np.linspace(0, lift_mm, 4):
@@ -124,7 +125,7 @@ LIFTS_MM = pytest.mark.parametrize("lift_mm", [5.0, 25.0])
 
 @LIFTS_MM
 def test_every_point_of_the_usable_canvas_is_reached_pen_down_and_pen_up(arm: Arm, lift_mm: float) -> None:
-    canvas = usable_canvas(arm, lift_mm)
+    canvas = usable_canvas(model_of(arm), lift_mm)
     across, away = np.linspace(0, canvas.width_mm, 33), np.linspace(0, canvas.height_mm, 21)
     points = np.stack(np.meshgrid(across, away), axis=-1).reshape(-1, 2)
     assert drawable(arm, canvas.to_arm_mm(points), lift_mm).all()
@@ -133,7 +134,7 @@ def test_every_point_of_the_usable_canvas_is_reached_pen_down_and_pen_up(arm: Ar
 @LIFTS_MM
 @pytest.mark.parametrize("side", ["near_mm", "far_mm", "right_mm", "left_mm"])
 def test_the_usable_canvas_cannot_grow_by_a_millimetre(arm: Arm, lift_mm: float, side: str) -> None:
-    canvas = usable_canvas(arm, lift_mm)
+    canvas = usable_canvas(model_of(arm), lift_mm)
     outwards = {"near_mm": -1.0, "far_mm": 1.0, "right_mm": -1.0, "left_mm": 1.0}[side]
     x = [canvas.near_mm, canvas.far_mm]
     y = [canvas.right_mm, canvas.left_mm]
@@ -147,11 +148,11 @@ def test_the_usable_canvas_cannot_grow_by_a_millimetre(arm: Arm, lift_mm: float,
 
 def test_without_joint_limits_in_the_way_the_usable_canvas_is_the_largest_of_the_fields_ring() -> None:
     arm = load_once("drawing_arm")
-    radii = configuration_map_of(arm).radii_mm
+    radii = model_of(arm).configuration_map().radii_mm
     largest = area_mm2(optimal_canvas(float(radii[-1]), float(radii[0])))
-    assert 0.995 * largest < area_mm2(usable_canvas(arm, 5.0)) <= largest
+    assert 0.995 * largest < area_mm2(usable_canvas(model_of(arm), 5.0)) <= largest
 
 
 def test_an_arm_that_cannot_lift_so_high_has_no_usable_canvas(arm: Arm) -> None:
     with pytest.raises(PlanError, match="no usable canvas"):
-        usable_canvas(arm, 250.0)
+        usable_canvas(model_of(arm), 250.0)

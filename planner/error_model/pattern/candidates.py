@@ -9,9 +9,10 @@ import numpy as np
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import PlanError
 from planner.kinematics.chain import Kinematics
-from planner.kinematics.link_clearance import KEPT_MM, link_clearance
+from planner.kinematics.limits import within_limits
+from planner.kinematics.link_clearance import KEPT_MM
 from planner.kinematics.projection import project
-from planner.redundancy.configuration_map import configuration_map_of, within_limits
+from planner.redundancy.arm_model import ArmModel
 from planner.redundancy.configuration_tests import LIMIT_MARGIN
 from planner.settings import WHERE_SLACK_IS_TAKEN_UP, CanvasKind
 from planner.workspace.canvas import canvas_of
@@ -41,12 +42,12 @@ class Candidates:
         return Candidates(self.tips_mm[rows], self.free[rows], self.raised[rows], self.drawn[rows])
 
 
-def candidates(kinematics: Kinematics, margin_mm: float, count: int, random: np.random.Generator) -> Candidates:
+def candidates(model: ArmModel, margin_mm: float, count: int, random: np.random.Generator) -> Candidates:
     """So many places all over the usable canvas less a margin, the arm's redundancy used as widely as its limits
     allow, with room for the lift. Errors: PlanError where the arm has no canvas, or none that large."""
-    arm = kinematics.arm
-    field = configuration_map_of(arm, WHERE_SLACK_IS_TAKEN_UP)
-    canvas = canvas_of(arm, CanvasKind.USABLE, arm.pen.lift_mm)
+    arm, kinematics = model.arm, model.kinematics
+    field = model.configuration_map(WHERE_SLACK_IS_TAKEN_UP)
+    canvas = canvas_of(model, CanvasKind.USABLE, arm.pen.lift_mm)
     low = np.array([canvas.near_mm, canvas.right_mm]) + margin_mm
     high = np.array([canvas.far_mm, canvas.left_mm]) - margin_mm
     if (high <= low).any():
@@ -84,6 +85,6 @@ def candidates(kinematics: Kinematics, margin_mm: float, count: int, random: np.
 def _kept(kinematics: Kinematics, free: FloatArray) -> BoolArray:
     """(n,) whether limits are kept with room to spare, and links apart from each other and above the paper."""
     arm = kinematics.arm
-    kept: BoolArray = within_limits(arm, free, slack=-LIMIT_MARGIN * float((arm.maximum - arm.minimum).min()))
-    kept &= link_clearance(arm).least_mm(free)[0] >= KEPT_MM
+    kept = within_limits(arm, arm.complete(free), slack=-LIMIT_MARGIN * float((arm.maximum - arm.minimum).min()))
+    kept &= kinematics.clearance.least_mm(free)[0] >= KEPT_MM
     return kept & (kinematics.nodes_mm(free)[:, :-1, 2] >= min(float(arm.paper.T_paper_base[2, 3]), 0.0)).all(axis=1)

@@ -6,8 +6,8 @@ import numpy as np
 
 from planner.arrays import FloatArray
 from planner.kinematics.chain import Kinematics
+from planner.kinematics.limits import Limits, within_limits
 from planner.kinematics.projection import project
-from planner.timing.limits import Limits
 
 _SHORTEST_S = 0.15
 _ROUNDS = 4
@@ -38,7 +38,7 @@ def straight_leg(
         tips = np.column_stack((axis[0] + radius * np.cos(azimuth), axis[1] + radius * np.sin(azimuth), height))
         configurations, exact = project(kinematics, free[0] + along * (free[1] - free[0]), tips)
         joints = arm.complete(configurations)
-        if not exact.all() or (joints < arm.minimum).any() or (joints > arm.maximum).any():
+        if not exact.all() or not within_limits(arm, joints, slack=0.0).all():
             return None
         slowing = slowing_from_rest(limits, joints, rate_hz)
         if slowing <= 1.0:

@@ -15,8 +15,9 @@ from planner.error_model.pattern.choice import chosen_marks
 from planner.error_model.pattern.legs import RESTING, slowing_from_rest, straight_leg
 from planner.error_model.pattern.touch import REACH_MM, Touch, ends_of, touch_line
 from planner.errors import PlanError
-from planner.kinematics.chain import Kinematics, kinematics_of
-from planner.timing.limits import Limits
+from planner.kinematics.chain import Kinematics
+from planner.kinematics.limits import Limits
+from planner.redundancy.arm_model import ArmModel
 from planner.trajectory import PATTERN, TRAVELLING, Trajectory
 
 RATE_HZ = 100.0
@@ -44,9 +45,9 @@ class Pattern:
 def make_pattern(arm: Arm, name: str, count: int, seed: int = 0) -> Pattern:
     """A pattern of `count` marks for `arm`, which its trajectory calls `name`. Errors: PlanError, ArmFileError."""
     random = np.random.default_rng(seed)
-    kinematics = kinematics_of(arm)
-    pool = candidates(kinematics, _MARGIN_MM, _POOL, random)
-    drawing = _Drawing(kinematics, Limits.of(arm), pool)
+    model = ArmModel(arm)
+    pool = candidates(model, _MARGIN_MM, _POOL, random)
+    drawing = _Drawing(model.kinematics, model.limits, pool)
     parameters = Parameters.of(believed(arm), arm)
     chosen = chosen_marks(arm, parameters, pool, count, random, drawing.accepts)
     if len(chosen) < count:

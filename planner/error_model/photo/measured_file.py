@@ -10,7 +10,7 @@ from typing import IO, cast
 import numpy as np
 
 from planner.error_model.photo.reading import MeasuredMark
-from planner.trajectory import written_aside
+from planner.files import written_aside
 
 COLUMNS = ("mark", "x_mm", "y_mm", "h_mm", "sd_mm")
 TOUCH_COLUMNS = ("touch_t_s", "touch_x_mm", "touch_y_mm", "touch_fall_x", "touch_fall_y")

@@ -17,7 +17,7 @@ import numpy as np
 
 from planner.arrays import FloatArray
 from planner.errors import PlannerError
-from planner.trajectory import written_aside
+from planner.files import written_aside
 
 COLUMNS = ("mark", "t_s", "x_mm", "y_mm")
 TOUCH_COLUMNS = ("touch_x0_mm", "touch_y0_mm", "touch_x1_mm", "touch_y1_mm", "touch_slope")

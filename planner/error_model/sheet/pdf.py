@@ -16,7 +16,7 @@ from planner.error_model.sheet.layout import BAR_MM, BASE_RING_MM, PaperSize, Sh
 from planner.error_model.sheet.marks import Mark, extent_mm, places_mm
 from planner.error_model.sheet.tags import tag_modules
 from planner.errors import UsageError
-from planner.trajectory import written_aside
+from planner.files import written_aside
 
 try:
     from fpdf import FPDF, ViewerPreferences

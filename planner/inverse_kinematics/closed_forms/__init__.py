@@ -9,15 +9,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.errors import UsageError
 from planner.inverse_kinematics.closed_forms import drawing_arm, scara, six_joint, stanford, three_joint
 from planner.inverse_kinematics.closed_forms.branches import Branches
-from planner.inverse_kinematics.closed_forms.selection import AtTip, selected_configurations
+from planner.inverse_kinematics.closed_forms.selection import AtTip, select
 
-References = Callable[[Arm, FloatArray], FloatArray]
-"""Arm and tips (n, 3) in mm to independent joints (n, n_independent), NaN where no configuration exists."""
+ClosedForm = Callable[[FloatArray], FloatArray]
+"""Tips (n, 3) in mm to independent joints (n, n_independent), NaN where no configuration exists."""
 
 AtPose = Callable[[Arm, FloatArray], Branches]
 """Arm and poses (n, 4, 4), mm, to all configurations."""
@@ -48,11 +50,14 @@ def family_of(arm: Arm) -> Family:
     return FAMILIES[arm.closed_form]
 
 
-def closed_form_configurations(arm: Arm) -> References:
-    """Reference configurations for drawing, by the arm's closed form. Errors: UsageError where it has none."""
-    family = family_of(arm)
+def closed_form_of(arm: Arm) -> ClosedForm:
+    """The configurations that the arm's closed form draws with: one branch, chosen here, once. Errors: UsageError where
+    the arm has no closed form, PlanError where none of its configurations is within the joint limits."""
+    at_tip, redundancy = family_of(arm).at_tip, family_of(arm).redundancy
+    chosen = select(arm, at_tip, redundancy is not None)
 
-    def references(arm: Arm, tip_mm: FloatArray) -> FloatArray:
-        return selected_configurations(arm, family.at_tip, family.redundancy is not None, tip_mm)
+    def configurations(tip_mm: FloatArray) -> FloatArray:
+        radius = np.hypot(tip_mm[:, 0], tip_mm[:, 1])
+        return at_tip(arm, tip_mm, chosen.redundancy_at(radius)).configurations[:, chosen.branch]
 
-    return references
+    return configurations

@@ -14,9 +14,6 @@ from planner.kinematics.joint_time import joint_time_s
 ELBOWS = (1.0, -1.0)
 """Order of the elbow branches: by the sign of the elbow's angle."""
 
-TOLERANCE = 1e-9
-"""Rounding that is forgiven at a joint limit (rad or mm)."""
-
 _BLOCK = 4096  # targets at a time, so that intermediate results stay in the processor's cache
 
 Solve = Callable[[slice, FloatArray], tuple[FloatArray, BoolArray]]
@@ -72,13 +69,6 @@ def solve_in_blocks(arm: Arm, n_targets: int, n_branches: int, solve: Solve) -> 
         away *= turn
         np.subtract(out, away, out=rows[:, :, block])
     return Branches(rows.transpose(2, 0, 1), gap, singular)
-
-
-def within_limits(arm: Arm, branches: Branches) -> BoolArray:
-    """(n, n_branches) whether a branch exists with all joints, mimic ones too, within their position limits."""
-    joints = arm.complete(branches.configurations)
-    inside: BoolArray = np.all((joints >= arm.minimum - TOLERANCE) & (joints <= arm.maximum + TOLERANCE), axis=-1)
-    return inside
 
 
 def nearest(arm: Arm, branches: Branches, before: FloatArray) -> tuple[IntArray, FloatArray]:

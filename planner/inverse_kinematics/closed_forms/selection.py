@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import Chebyshev
@@ -17,7 +16,8 @@ from numpy.polynomial import Chebyshev
 from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import PlanError
-from planner.inverse_kinematics.closed_forms.branches import TOLERANCE, Branches
+from planner.inverse_kinematics.closed_forms.branches import Branches
+from planner.kinematics.limits import SLACK
 
 AtTip = Callable[[Arm, FloatArray, FloatArray], Branches]
 """Arm, tips (n, 3) and redundancy (n,) to all configurations."""
@@ -55,14 +55,6 @@ class _Survey:
     share: FloatArray
 
 
-def selected_configurations(arm: Arm, at_tip: AtTip, redundant: bool, tip_mm: FloatArray) -> FloatArray:
-    """(n, n_independent) configurations at tips (n, 3), NaN where the selected branch has none. Errors: PlanError."""
-    chosen = select(arm, at_tip, redundant)
-    radius = np.hypot(tip_mm[:, 0], tip_mm[:, 1])
-    return at_tip(arm, tip_mm, chosen.redundancy_at(radius)).configurations[:, chosen.branch]
-
-
-@lru_cache(maxsize=16)
 def select(arm: Arm, at_tip: AtTip, redundant: bool) -> Selection:
     """The selection for drawing on the paper. Errors: PlanError where no configuration is within the joint limits."""
     values = _REDUNDANCY_RAD if redundant else np.zeros(1)
@@ -97,9 +89,9 @@ def _survey(arm: Arm, at_tip: AtTip, radii_mm: FloatArray, values_rad: FloatArra
     joints = arm.complete(np.ascontiguousarray(configurations))
     from_limit = np.minimum(joints - arm.minimum, arm.maximum - joints)
     room = (from_limit / (arm.maximum - arm.minimum))[..., 1:].min(axis=-1)
-    room[~(from_limit[..., 1:] >= -TOLERANCE).all(axis=-1)] = -np.inf
+    room[~(from_limit[..., 1:] >= -SLACK).all(axis=-1)] = -np.inf
     base = joints[..., 0] - (arm.minimum[0] + arm.maximum[0]) / 2
-    half = (arm.maximum[0] - arm.minimum[0]) / 2 + TOLERANCE
+    half = (arm.maximum[0] - arm.minimum[0]) / 2 + SLACK
     share = np.zeros(base.shape)
     for azimuth in _AZIMUTHS_RAD:
         turned = base + azimuth

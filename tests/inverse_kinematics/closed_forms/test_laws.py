@@ -10,9 +10,10 @@ import pytest
 from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import ArmFileError, UsageError
-from planner.inverse_kinematics.closed_forms import FAMILIES, Branches, closed_form_configurations, family_of
-from planner.inverse_kinematics.closed_forms.branches import nearest, within_limits
+from planner.inverse_kinematics.closed_forms import FAMILIES, Branches, closed_form_of, family_of
+from planner.inverse_kinematics.closed_forms.branches import nearest
 from planner.kinematics.joint_time import joint_time_s
+from planner.kinematics.limits import within_limits
 from tests.arms.chains import random_configurations
 from tests.inverse_kinematics.closed_forms.arms import (
     ALL,
@@ -239,14 +240,14 @@ def test_within_limits_asks_every_joint(arm: Arm) -> None:
     independent = random_configurations(arm, 9, 500)
     branches = solve(arm, independent)
     joints = arm.complete(branches.configurations)
-    inside = within_limits(arm, branches)
+    inside = within_limits(arm, joints)
     expected: BoolArray = ((joints > arm.minimum - 1e-8) & (joints < arm.maximum + 1e-8)).all(axis=-1)
     np.testing.assert_array_equal(inside, expected)
     mimic = arm.complete(independent)
     kept = ((mimic >= arm.minimum) & (mimic <= arm.maximum)).all(axis=1)
     assert inside[kept].any(axis=1).all()
     assert inside.any() and not inside.all()
-    assert not within_limits(arm, branches.only(~inside)).any()
+    assert not within_limits(arm, arm.complete(branches.only(~inside).configurations)).any()
 
 
 def test_angles_are_at_the_turn_nearest_the_middle_of_their_range(posed: Arm) -> None:
@@ -292,7 +293,7 @@ def test_rows_of_another_form_are_refused_by_name(name: str) -> None:
     with pytest.raises(ArmFileError, match=f"needs {arm.n_joints} of them"):
         FAMILIES[name].at_tip(fewer, tip, chosen)
     with pytest.raises(UsageError, match="no closed form"):
-        closed_form_configurations(replace(arm, closed_form=None))
+        closed_form_of(replace(arm, closed_form=None))
 
 
 def test_wrists_whose_axes_do_not_meet_are_refused() -> None:

@@ -12,8 +12,8 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.closed_forms import scara
 from planner.inverse_kinematics.closed_forms.branches import nearest
-from planner.kinematics.chain import kinematics_of
 from planner.kinematics.joint_time import joint_time_s
+from tests.arms.chains import kinematics_of
 from tests.inverse_kinematics.closed_forms.arms import arm_of
 
 A_MM = 100.0

@@ -9,7 +9,7 @@ import pytest
 
 from planner.arms.arm import Arm
 from planner.errors import PlanError
-from planner.inverse_kinematics.closed_forms import closed_form_configurations, family_of
+from planner.inverse_kinematics.closed_forms import closed_form_of, family_of
 from planner.inverse_kinematics.closed_forms.selection import select
 from tests.inverse_kinematics.closed_forms.arms import NAMES, arm_of, changed, poses_of
 
@@ -36,7 +36,7 @@ def fan(arm: Arm, azimuth_rad: float) -> np.ndarray:
 @pytest.mark.parametrize("azimuth_deg", [-30, 0])
 def test_selected_configurations_draw_within_limits_and_smoothly(arm: Arm, azimuth_deg: float) -> None:
     tip = fan(arm, np.radians(azimuth_deg))
-    independent = closed_form_configurations(arm)(arm, tip)
+    independent = closed_form_of(arm)(tip)
     joints = arm.complete(independent)
     np.testing.assert_allclose(poses_of(arm, joints)[:, :3, 3], tip, atol=1e-9)
     assert (joints >= arm.minimum - 1e-9).all() and (joints <= arm.maximum + 1e-9).all()
@@ -46,13 +46,13 @@ def test_selected_configurations_draw_within_limits_and_smoothly(arm: Arm, azimu
 
 def test_beyond_reach_there_is_no_configuration(arm: Arm) -> None:
     tip = np.array([[2000.0, 0.0, 0.0]])
-    assert arm.closed_form == "stanford" or np.isnan(closed_form_configurations(arm)(arm, tip)).all()
+    assert arm.closed_form == "stanford" or np.isnan(closed_form_of(arm)(tip)).all()
 
 
 def test_the_middle_of_the_window_has_room_on_both_sides() -> None:
     """The spin of a tool in the middle of its joint's range: q6 at 0, whatever turns the rest of the chain makes."""
     arm = arm_of("six_joint")
-    assert np.abs(closed_form_configurations(arm)(arm, fan(arm, 0.2))[:, 5]).max() < np.radians(2)
+    assert np.abs(closed_form_of(arm)(fan(arm, 0.2))[:, 5]).max() < np.radians(2)
 
 
 def test_an_arm_whose_limits_leave_nothing_is_refused() -> None:

@@ -1,4 +1,4 @@
-"""The joint limits that motions are timed within."""
+"""The joint limits: whether positions keep them, and those that motions are timed within."""
 
 from __future__ import annotations
 
@@ -7,7 +7,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arms.arm import Arm
-from planner.arrays import FloatArray
+from planner.arrays import BoolArray, FloatArray
+
+SLACK = 1e-9
+"""Rounding that is forgiven at a position limit, rad or mm."""
+
+
+def beyond_limits(arm: Arm, joints: FloatArray) -> FloatArray:
+    """(..., n_joints) how far each joint of (..., n_joints) is beyond its nearer limit, rad or mm; negative within."""
+    beyond: FloatArray = np.maximum(arm.minimum - joints, joints - arm.maximum)
+    return beyond
+
+
+def within_limits(arm: Arm, joints: FloatArray, slack: float = SLACK) -> BoolArray:
+    """(...,) whether all joints of (..., n_joints) keep their position limits; none does where one is NaN."""
+    within: BoolArray = np.all((joints >= arm.minimum - slack) & (joints <= arm.maximum + slack), axis=-1)
+    return within
 
 
 @dataclass(frozen=True, eq=False, slots=True)

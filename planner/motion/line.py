@@ -1,0 +1,78 @@
+"""From the polylines of strokes to joint samples: smooth pen paths, exact joint paths, and their timing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from planner.arrays import FloatArray
+from planner.inverse_kinematics.joint_path import JointPaths
+from planner.inverse_kinematics.references import References
+from planner.inverse_kinematics.stroke_configurations import (
+    InfeasiblePath,
+    colliding_paths,
+    joint_paths,
+    strays_mm,
+)
+from planner.kinematics.chain import Kinematics
+from planner.motion.chord_error_limit import chord_error_limit
+from planner.motion.held_motion import timed_within
+from planner.motion.speed_limit import pen_speed_mm_s, rate_limit
+from planner.motion.timed_stroke import Contact, TimedStroke
+from planner.motion.tolerance import CHORD_SHARE, SAMPLE_SHARE, SMOOTH_SHARE, SPLINE_SHARE
+from planner.placement.pen_path import PenPaths, smoothed
+from planner.redundancy.arm_model import ArmModel
+from planner.settings import PlanSettings
+from planner.timing.timing_problem import FRACTIONS
+
+TIMING_SUBDIVISIONS = 1
+"""How often the cells of a path are cut in two before it is timed: jerk switches at cell ends only, and cells as
+long as the corners that they go round are too coarse for that."""
+
+
+def timed_lines(
+    model: ArmModel, references: References, settings: PlanSettings, strokes: Sequence[FloatArray]
+) -> list[TimedStroke | InfeasiblePath]:
+    """Joint samples of each stroke (n > 1, 2), arm mm, or why it cannot be drawn."""
+    kinematics, tolerance_mm = model.kinematics, settings.tolerance_mm
+    paths, smooth = smoothed(strokes, SMOOTH_SHARE * tolerance_mm)
+    splines, infeasible_paths = joint_paths(kinematics, references, paths)
+    if not infeasible_paths and strays_mm(kinematics, paths, splines).max() > SPLINE_SHARE * tolerance_mm:
+        paths = paths.subdivided()
+        splines, infeasible_paths = joint_paths(kinematics, references, paths)
+    if infeasible_paths:
+        blocked = {infeasible_path.path: infeasible_path for infeasible_path in infeasible_paths}
+        feasible = [stroke for index, stroke in enumerate(strokes) if index not in blocked]
+        rest = iter(timed_lines(model, references, settings, feasible) if feasible else ())
+        return [blocked[index] if index in blocked else next(rest) for index in range(len(strokes))]
+    for _ in range(TIMING_SUBDIVISIONS):
+        paths, splines = paths.subdivided(), splines.subdivided()
+    speed_limit = pen_speed_limit(kinematics, paths, splines, settings)
+    motions = timed_within(kinematics, model.limits, paths, splines, speed_limit, tolerance_mm, settings.rate_hz)
+    collisions = colliding_paths(kinematics, [motion.joints for motion in motions])
+    dwell = round(settings.dwell_s * settings.rate_hz)
+    timed: list[TimedStroke | InfeasiblePath] = []
+    for index, (stroke, motion, is_smooth) in enumerate(zip(strokes, motions, smooth.tolist(), strict=True)):
+        independent = kinematics.independent_of(motion.joints)
+        timed.append(
+            collisions.get(index)
+            or TimedStroke(
+                motion.joints,
+                Contact(stroke[0], independent[0]),
+                Contact(stroke[-1], independent[-1]),
+                dwell,
+                motion.converged,
+                motion.held and is_smooth,
+            )
+        )
+    return timed
+
+
+def pen_speed_limit(kinematics: Kinematics, paths: PenPaths, splines: JointPaths, settings: PlanSettings) -> FloatArray:
+    """(total cells, n_fractions) cap on dsigma/dt at FRACTIONS of every cell: the pen's own speed, and what keeps it
+    near its path between samples."""
+    speed_mm_s = pen_speed_mm_s(kinematics.arm, settings)
+    chords = rate_limit(paths, FRACTIONS, speed_mm_s, SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz)
+    bulges = chord_error_limit(kinematics, splines, CHORD_SHARE * settings.tolerance_mm, settings.rate_hz)
+    return np.minimum(chords, bulges[:, None])
