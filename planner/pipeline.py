@@ -367,8 +367,11 @@ def _assembled(
 def _verify(trajectory: Trajectory, arm: Arm) -> None:
     """Every limit, once more, on the samples as they will be written."""
     limits, period_s = Limits.of(arm), 1 / trajectory.rate_hz
+    rounding = arm.from_file_units(trajectory.rounding.max(axis=0))
     slowing = max(  # blocks overlap by the three samples that a third difference looks back
-        limits.slowing_of(arm.from_file_units(trajectory.positions[begin : begin + _BLOCK_SAMPLES + 3]), period_s)
+        limits.slowing_of(
+            arm.from_file_units(trajectory.positions[begin : begin + _BLOCK_SAMPLES + 3]), period_s, rounding
+        )
         for begin in range(0, trajectory.n_samples, _BLOCK_SAMPLES)
     )
     if not np.isfinite(trajectory.positions).all():
