@@ -25,6 +25,7 @@ from planner.settings import CanvasKind, Method, PlanSettings
 from planner.trajectory import TRAVELLING, Trajectory, write_trajectory
 from planner.workspace.canvas import canvas_of
 from tests.arms.chains import DRAWING_ARMS, load_once
+from tests.checking.scribbles import random_drawing
 from tests.drawn_shapes import Shape, bezier, drawings_made, ellipse, polyline, svg_of, tap
 
 TOLERANCE_MM = 0.05
@@ -312,3 +313,13 @@ def test_between_rare_samples_of_quick_pens_joints_that_move_straight_keep_the_t
     )
     missed = [finding for finding in check_result.findings if not finding.passed]
     assert not [finding for finding in missed if "drawing" in finding.remark or "paper" in finding.check], missed
+
+
+@pytest.mark.parametrize("method", [Method.NLP, Method.DLS])
+def test_sequential_methods_draw_beside_joint_limits_what_method_path_draws(tmp_path: Path, method: Method) -> None:
+    rng = np.random.default_rng(5)
+    drawing = tmp_path / "scribble.svg"
+    for _ in range(3):  # over all of a canvas at whose edge a joint is at its limit
+        drawing.write_text(random_drawing(rng, n_things=3))
+        made = plan(drawing, PlanSettings("drawing_arm_2022", method, margin_mm=0.0), lambda *_: None)
+        assert check_trajectory(made.trajectory, load_once("drawing_arm_2022"), made.drawing).passed

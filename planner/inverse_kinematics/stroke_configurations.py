@@ -34,6 +34,8 @@ TARGET_SPACING_MM = 1.0
 """Distance between the targets that sequential methods solve for; splines carry their configurations between."""
 _CHECKED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 _MIDDLE = np.array([0.5])
+_TO_METHOD_PATH = (0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
+"""Shares of the way to the references of method `path` that are tried one after the other."""
 _STRAYED_MM = 0.005
 """A spline that strays further than this from its path between exact knots joins configurations of different
 branches."""
@@ -79,7 +81,11 @@ def exact_configurations(
 def joint_paths(
     arm: Arm, method: Method, paths: PenPaths, weights: ConfigurationWeights = _WEIGHTS
 ) -> tuple[JointPaths, list[InfeasiblePath]]:
-    """Joint splines along pen paths on the paper, and the paths that cannot be followed, each with where."""
+    """Joint splines along pen paths on the paper, and the paths that cannot be followed, each with where.
+
+    Where a sequential method leads out of the joints' ranges, or from branch to branch, its references are drawn
+    towards those of method `path`, all along a path alike, by as little as lets it be followed.
+    """
     starts = starts_of(paths.n_cells)
     corners = paths.points(np.array([0.0, 1.0]))
     knots = np.insert(corners[:, 0], starts[1:], corners[starts[1:] - 1, 1], axis=0)
@@ -93,11 +99,33 @@ def joint_paths(
         references = branch_references(configuration_branches(arm, weights), tips, per_path[:-1])
     else:
         references = configurations_at(arm, method, tips, weights)
-    independent, exact = project(kinematics_of(arm), np.nan_to_num(references), tips)
+    splines, infeasible_paths = _followed(arm, paths, references, tips, per_path)
+    if method not in (Method.DLS, Method.NLP) or not infeasible_paths:
+        return splines, infeasible_paths
+    reasons = {infeasible_path.path: infeasible_path for infeasible_path in infeasible_paths}
+    wished = references.copy()
+    sure = branch_references(configuration_branches(arm, weights), tips, per_path[:-1])
+    for share in _TO_METHOD_PATH:
+        for infeasible_path in infeasible_paths:
+            along = slice(int(per_path[infeasible_path.path]), int(per_path[infeasible_path.path + 1]))
+            references[along] = (1 - share) * wished[along] + share * sure[along]
+        splines, infeasible_paths = _followed(arm, paths, references, tips, per_path)
+        if not infeasible_paths:
+            break
+    return splines, [reasons[infeasible_path.path] for infeasible_path in infeasible_paths]
+
+
+def _followed(
+    arm: Arm, paths: PenPaths, references: FloatArray, tips_mm: FloatArray, per_path: IntArray
+) -> tuple[JointPaths, list[InfeasiblePath]]:
+    """Joint splines through the exact configurations near the references (n_knots, n_independent), and the paths that
+    these cannot follow."""
+    independent, exact = project(kinematics_of(arm), np.nan_to_num(references), tips_mm)
     exact &= np.isfinite(independent).all(axis=1)  # where it ran away, the spline still needs numbers
     independent = np.where(np.isfinite(independent), independent, 0.0)
     splines = interpolate(paths.n_cells, arm.complete(independent))
-    return splines, _infeasible_paths(arm, splines, tips, exact, per_path, strays_mm(arm, paths, splines) > _STRAYED_MM)
+    strayed = strays_mm(arm, paths, splines) > _STRAYED_MM
+    return splines, _infeasible_paths(arm, splines, tips_mm, exact, per_path, strayed)
 
 
 def strays_mm(arm: Arm, paths: PenPaths, splines: JointPaths) -> FloatArray:
