@@ -115,8 +115,8 @@ def plan_travel_moves(
     lifts = quickest_lifts(kinematics, limits.jerk, np.concatenate([shape.configurations for shape in shapes]))
     lifted = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
     moves = _along(kinematics, limits, rules, lifted)
-    # The quickest way up may lead a joint out of its range where the way with the least motion does not, or one on which
-    # the joints make for the middle of their ranges; and a lower lift leads less far.
+    # The quickest way up may lead a joint out of its range where the way with the least motion does not, or one on
+    # which the joints make for the middle of their ranges; and a lower lift leads less far.
     lowest = replace(rules, lift_mm=max(rules.clearance_mm, _LOW_LIFT * rules.lift_mm))
     for height in (rules, lowest):
         for share in (0.0, *_TO_THE_MIDDLE):
