@@ -57,6 +57,9 @@ from planner.workspace.canvas import Canvas, canvas_of
 _SMALL_BYTES = 60_000
 """Drawings in shorter files, of a few thousand points, are done sooner than worker processes have started."""
 _BLOCK_SAMPLES = 65_536
+_MANY_CHUNKS, _FORETELLING = 200, 8
+"""Work chunks from which on some are timed beforehand, and how many of them."""
+_TOO_MUCH = "draw less of it, or choose a lower --rate"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -222,7 +225,11 @@ def _timed_strokes(
     are left out if the user wants so."""
     settings = context.settings
     pieces = pieces_of(context, strokes)
-    results = _results(executor, context, list(chain.from_iterable(pieces)), report)
+    together = list(chain.from_iterable(pieces))
+    report("drawing motions", 0, len(together))
+    _foretell(executor, context, together)
+    results = _results(executor, context, together, report)
+    n_samples = 0
     timed: list[TimedStroke] = []
     kept: list[FloatArray] = []
     lost: list[FloatArray] = []
@@ -232,6 +239,8 @@ def _timed_strokes(
         if not infeasible_paths:
             timed.append(TimedStroke.of([result for result in made if isinstance(result, TimedStroke)]))
             kept.append(stroke)
+            n_samples += len(timed[-1].joints)
+            require_bounded(n_samples / settings.rate_hz, settings.rate_hz, "the drawing", _TOO_MUCH)
         elif settings.skip_unreachable:
             lost.append(stroke)
         else:
@@ -250,12 +259,29 @@ def _timed_strokes(
     return timed, kept, _drawn(lost), [f"{what}: {counted(count, 'stroke')}" for count, what in counts if count]
 
 
+def _foretell(executor: ChunkExecutor, context: PlanContext, pieces: Sequence[Piece]) -> None:
+    """Time a few parts of a drawing that has very many, spread over all of it. Errors: UsageError where by these the
+    whole would take at least twice as long as a plan may: that is better said now than after hours."""
+    chunks = list(stroke_chunks(context, pieces))
+    if len(chunks) < _MANY_CHUNKS:
+        return
+    few = chunks[:: max(len(chunks) // _FORETELLING, 1)]
+    n_samples = sum(
+        len(result.joints)
+        for results in executor(timed_strokes, iter(few))
+        for result in results
+        if isinstance(result, TimedStroke)
+    )
+    rate_hz = context.settings.rate_hz
+    least_s = 0.5 * n_samples / rate_hz * len(chunks) / len(few)
+    require_bounded(least_s, rate_hz, "the drawing", _TOO_MUCH)
+
+
 def _results(
     executor: ChunkExecutor, context: PlanContext, pieces: Sequence[Piece], report: Report
 ) -> Iterator[TimedStroke | InfeasiblePath]:
     """What became of each piece, as soon as it is known."""
     done = 0
-    report("drawing motions", 0, len(pieces))
     for results in executor(timed_strokes, stroke_chunks(context, pieces)):
         done += len(results)
         report("drawing motions", done, len(pieces))
@@ -375,8 +401,11 @@ def _assembled(
 def _verify(trajectory: Trajectory, arm: Arm) -> None:
     """Every limit, once more, on the samples as they will be written."""
     limits, period_s = Limits.of(arm), 1 / trajectory.rate_hz
+    rounding = arm.from_file_units(trajectory.rounding.max(axis=0))
     slowing = max(  # blocks overlap by the three samples that a third difference looks back
-        limits.slowing_of(arm.from_file_units(trajectory.positions[begin : begin + _BLOCK_SAMPLES + 3]), period_s)
+        limits.slowing_of(
+            arm.from_file_units(trajectory.positions[begin : begin + _BLOCK_SAMPLES + 3]), period_s, rounding
+        )
         for begin in range(0, trajectory.n_samples, _BLOCK_SAMPLES)
     )
     if not np.isfinite(trajectory.positions).all():

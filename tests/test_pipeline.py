@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ import pytest
 import shapely
 from hypothesis import HealthCheck, given, settings
 
+from planner import pipeline
 from planner.arms.arm_file import arms_folder
 from planner.arrays import FloatArray
 from planner.checking.check import check_trajectory
@@ -22,9 +23,11 @@ from planner.head import LeftOut
 from planner.pipeline import Plan, plan
 from planner.placement import pieces
 from planner.settings import CanvasKind, Method, PlanSettings
+from planner.timing.length_bound import require_bounded
 from planner.trajectory import TRAVELLING, Trajectory, write_trajectory
 from planner.workspace.canvas import canvas_of
 from tests.arms.chains import DRAWING_ARMS, load_once, model_of
+from tests.checking.scribbles import random_drawing
 from tests.drawn_shapes import Shape, bezier, drawings_made, ellipse, polyline, svg_of, tap
 
 TOLERANCE_MM = 0.05
@@ -312,3 +315,27 @@ def test_between_rare_samples_of_quick_pens_joints_that_move_straight_keep_the_t
     )
     missed = [finding for finding in check_result.findings if not finding.passed]
     assert not [finding for finding in missed if "drawing" in finding.remark or "paper" in finding.check], missed
+
+
+@pytest.mark.parametrize("method", [Method.NLP, Method.DLS])
+def test_sequential_methods_draw_beside_joint_limits_what_method_path_draws(tmp_path: Path, method: Method) -> None:
+    rng = np.random.default_rng(5)
+    drawing = tmp_path / "scribble.svg"
+    for _ in range(3):  # over all of a canvas at whose edge a joint is at its limit
+        drawing.write_text(random_drawing(rng, n_things=3))
+        made = plan(drawing, PlanSettings("drawing_arm_2022", method, margin_mm=0.0), lambda *_: None)
+        assert check_trajectory(made.trajectory, load_once("drawing_arm_2022"), made.drawing).passed
+
+
+def test_far_too_long_drawings_are_refused_before_all_of_it_is_timed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pipeline, "_MANY_CHUNKS", 2)
+    monkeypatch.setattr(pipeline, "require_bounded", partial(require_bounded, most_samples=1500))
+    walk = np.cumsum(np.random.default_rng(3).normal(size=(1500, 2)), axis=0)
+    drawing = tmp_path / "walk.svg"
+    drawing.write_text(svg_of([polyline(*walk.tolist())]))
+    told: list[tuple[str, int, int]] = []
+    with pytest.raises(UsageError, match="the drawing would take"):
+        plan(drawing, PlanSettings(tolerance_mm=0.01, speed_mm_s=500.0), lambda *progress: told.append(progress))
+    assert max(done for stage, done, _ in told if stage == "drawing motions") == 0

@@ -22,7 +22,7 @@ from planner.travel.travel_moves import TravelMove, TravelRules
 _CHUNK_WORK = 4000.0
 _LEAST_WORK = 10.0
 """What a stroke of no length costs at least."""
-_CHUNK_MOVES = 125
+_CHUNK_MOVES, _CHUNK_MOVE_SAMPLES = 125, 100_000.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -68,9 +68,11 @@ def stroke_chunks(context: PlanContext, pieces: Sequence[Piece]) -> Iterator[Str
 def travel_chunks(
     context: PlanContext, rules: TravelRules, start: Sequence[Contact | None], end: Sequence[Contact | None]
 ) -> Iterator[TravelChunk]:
-    """Travel moves cut into work chunks, likewise."""
-    for begin in range(0, len(start), _CHUNK_MOVES):
-        part = slice(begin, begin + _CHUNK_MOVES)
+    """Travel moves cut into work chunks, likewise: of fewer moves where each of them takes long."""
+    samples_per_move = max(rules.clearance_mm / rules.lowering_speed_mm_s * rules.rate_hz, 1.0)
+    n_moves = min(max(int(_CHUNK_MOVE_SAMPLES / samples_per_move), 1), _CHUNK_MOVES)
+    for begin in range(0, len(start), n_moves):
+        part = slice(begin, begin + n_moves)
         yield TravelChunk(context, rules, start[part], end[part])
 
 

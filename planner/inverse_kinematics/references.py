@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Protocol
 
@@ -34,6 +35,11 @@ class References(Protocol):
         """(n, n_independent) at the tips (n, 3) of paths that begin at `starts` (n_paths,), each path by itself."""
         ...
 
+    def surely_along(self, tips_mm: FloatArray, starts: IntArray) -> FloatArray | None:
+        """The same by a method that keeps to the joints' ranges and to a branch, for paths where this one does not;
+        None where there is no other."""
+        ...
+
     def at(self, tips_mm: FloatArray) -> FloatArray:
         """(n, n_independent) at single tips (n, 3), each by itself."""
         ...
@@ -46,12 +52,14 @@ def references_of(model: ArmModel, method: Method, weights: ConfigurationWeights
         return _FromMap(model.branches(weights))
     if method is Method.CLOSED_FORM:
         return _FromClosedForm(closed_form_of(model.arm))
-    home = home_of(model)
+    home, branches = home_of(model), partial(model.branches, weights)
     if method is Method.NLP:
         nlp = NlpSolver(model.kinematics)
-        return _InSequence(lambda tips_mm: nlp.solve_sequence(tips_mm, home).configurations, len(home))
+        return _InSequence(lambda tips_mm: nlp.solve_sequence(tips_mm, home).configurations, len(home), branches)
     dls, start = DlsSolver(model.kinematics), model.arm.complete(home)
-    return _InSequence(lambda tips_mm: dls.solve_sequence(tips_mm, start, FOR_DRAWING).configurations, len(home))
+    return _InSequence(
+        lambda tips_mm: dls.solve_sequence(tips_mm, start, FOR_DRAWING).configurations, len(home), branches
+    )
 
 
 def home_of(model: ArmModel) -> FloatArray:
@@ -69,6 +77,9 @@ class _FromMap:
     def along(self, tips_mm: FloatArray, starts: IntArray) -> FloatArray:
         return branch_references(self.branches, tips_mm, starts)
 
+    def surely_along(self, tips_mm: FloatArray, starts: IntArray) -> None:
+        return None
+
     def at(self, tips_mm: FloatArray) -> FloatArray:
         return branch_references(self.branches, tips_mm, np.arange(len(tips_mm)))
 
@@ -82,6 +93,9 @@ class _FromClosedForm:
     def along(self, tips_mm: FloatArray, starts: IntArray) -> FloatArray:
         return self.configurations(tips_mm)
 
+    def surely_along(self, tips_mm: FloatArray, starts: IntArray) -> None:
+        return None
+
     def at(self, tips_mm: FloatArray) -> FloatArray:
         return self.configurations(tips_mm)
 
@@ -92,10 +106,14 @@ class _InSequence:
 
     solve: Callable[[FloatArray], FloatArray]
     n_independent: int
+    branches: Callable[[], Sequence[ConfigurationMap]]
 
     def along(self, tips_mm: FloatArray, starts: IntArray) -> FloatArray:
         ends = np.append(starts, len(tips_mm))
         return np.concatenate([self._along_one(tips_mm[first:last]) for first, last in pairwise(ends)])
+
+    def surely_along(self, tips_mm: FloatArray, starts: IntArray) -> FloatArray:
+        return branch_references(self.branches(), tips_mm, starts)
 
     def at(self, tips_mm: FloatArray) -> FloatArray:
         if len(tips_mm) == 0:

@@ -22,6 +22,8 @@ from planner.ragged import starts_of
 
 _CHECKED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 _MIDDLE = np.array([0.5])
+_TO_METHOD_PATH = (0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
+"""Shares of the way to the references of method `path` that are tried one after the other."""
 _STRAYED_MM = 0.005
 """A spline that strays further than this from its path between exact knots joins configurations of different
 branches."""
@@ -54,18 +56,44 @@ def exact_configurations(
 def joint_paths(
     kinematics: Kinematics, references: References, paths: PenPaths
 ) -> tuple[JointPaths, list[InfeasiblePath]]:
-    """Joint splines along pen paths on the paper, and the paths that cannot be followed, each with where."""
+    """Joint splines along pen paths on the paper, and the paths that cannot be followed, each with where.
+
+    Where a sequential method leads out of the joints' ranges, or from branch to branch, its references are drawn
+    towards those of method `path`, all along a path alike, by as little as lets it be followed.
+    """
     starts = starts_of(paths.n_cells)
     corners = paths.positions(np.array([0.0, 1.0]))
     knots = np.insert(corners[:, 0], starts[1:], corners[starts[1:] - 1, 1], axis=0)
     tips = np.column_stack((knots, np.zeros(len(knots))))
     per_path = starts + np.arange(len(starts))  # each path has a knot more than cells
-    independent, exact = project(kinematics, np.nan_to_num(references.along(tips, per_path[:-1])), tips)
+    wished = references.along(tips, per_path[:-1])
+    splines, infeasible_paths = _followed(kinematics, paths, wished, tips, per_path)
+    sure = references.surely_along(tips, per_path[:-1]) if infeasible_paths else None
+    if sure is None:
+        return splines, infeasible_paths
+    reasons = {infeasible_path.path: infeasible_path for infeasible_path in infeasible_paths}
+    tried = wished.copy()
+    for share in _TO_METHOD_PATH:
+        for infeasible_path in infeasible_paths:
+            along = slice(int(per_path[infeasible_path.path]), int(per_path[infeasible_path.path + 1]))
+            tried[along] = (1 - share) * wished[along] + share * sure[along]
+        splines, infeasible_paths = _followed(kinematics, paths, tried, tips, per_path)
+        if not infeasible_paths:
+            break
+    return splines, [reasons[infeasible_path.path] for infeasible_path in infeasible_paths]
+
+
+def _followed(
+    kinematics: Kinematics, paths: PenPaths, references: FloatArray, tips_mm: FloatArray, per_path: IntArray
+) -> tuple[JointPaths, list[InfeasiblePath]]:
+    """Joint splines through the exact configurations near the references (n_knots, n_independent), and the paths that
+    these cannot follow."""
+    independent, exact = project(kinematics, np.nan_to_num(references), tips_mm)
     exact &= np.isfinite(independent).all(axis=1)  # where it ran away, the spline still needs numbers
     independent = np.where(np.isfinite(independent), independent, 0.0)
     splines = interpolate(paths.n_cells, kinematics.arm.complete(independent))
     strayed = strays_mm(kinematics, paths, splines) > _STRAYED_MM
-    return splines, _infeasible_paths(kinematics, splines, tips, exact, per_path, strayed)
+    return splines, _infeasible_paths(kinematics, splines, tips_mm, exact, per_path, strayed)
 
 
 def strays_mm(kinematics: Kinematics, paths: PenPaths, splines: JointPaths) -> FloatArray:

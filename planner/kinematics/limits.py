@@ -39,14 +39,19 @@ class Limits:
         keep = 1.0 - 1e-6
         return Limits(arm.max_velocity * keep, arm.max_acceleration * keep, arm.max_jerk * keep)
 
-    def slowing_of(self, positions: FloatArray, period_s: float) -> float:
+    def slowing_of(self, positions: FloatArray, period_s: float, rounding: FloatArray | float = 0.0) -> float:
         """How much slower samples (n, n_joints) of a motion would have to be played for the differences of
-        neighbouring samples to keep all limits; at most 1 where they do."""
+        neighbouring samples to keep all limits; at most 1 where they do.
+
+        rounding: (n_joints,) how far each position may be from the one that was meant. A k-th difference is off by 2^k
+        times as much, which over k periods of a high rate is no longer small beside a limit, and is allowed.
+        """
         needed = 0.0
         difference = positions
         for order, limit in enumerate((self.velocity, self.acceleration, self.jerk), 1):
             difference = np.diff(difference, axis=0)
             if len(difference):
-                ratio = float((np.abs(difference) / limit).max()) / period_s**order
+                moved = np.abs(difference) - 2.0**order * rounding
+                ratio = max(float((moved / limit).max()), 0.0) / period_s**order
                 needed = max(needed, ratio ** (1 / order))
         return needed

@@ -51,6 +51,11 @@ _HELPED = 0.97
 _JUMP = 1.01
 """A move that was slowed to its limits and still needs to be this much slower jumps from configuration to
 configuration."""
+_TO_THE_MIDDLE = (0.25, 0.5, 1.0, 2.0)
+"""Shares of the way to the middle of their ranges that the joints are to have made at the lift height, one after the
+other, where they otherwise leave them."""
+_LOW_LIFT = 0.5
+"""Share of the lift height that is tried, never below the clearance, where nothing keeps within the joints' ranges."""
 _SAMPLES_AT_ONCE = 100_000
 _TOO_SLOW = "choose a higher --lowering-speed, a lower --rate or --lift, or raise the limits of the arm's joints"
 _TURN_MARGIN = 0.999
@@ -100,10 +105,17 @@ def plan_travel_moves(
     lifts = quickest_lifts(kinematics, limits.jerk, np.concatenate([shape.configurations for shape in shapes]))
     lifted = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
     moves = _along(kinematics, limits, rules, lifted)
-    # The quickest way up may lead a joint out of its range where the way with the least motion does not.
-    out = [index for index, move in enumerate(moves) if not move.exact]
-    for index, move in zip(out, _along(kinematics, limits, rules, [shapes[index] for index in out]), strict=True):
-        moves[index] = move if move.exact else moves[index]
+    # The quickest way up may lead a joint out of its range where the way with the least motion does not, or one on
+    # which the joints make for the middle of their ranges; and a lower lift leads less far.
+    lowest = replace(rules, lift_mm=max(rules.clearance_mm, _LOW_LIFT * rules.lift_mm))
+    for height in (rules, lowest):
+        for share in (0.0, *_TO_THE_MIDDLE):
+            out = [index for index, move in enumerate(moves) if not move.exact and not move.too_long_s]
+            if height is not rules:  # the ends of a drawing are at the lift height itself
+                out = [index for index in out if shapes[index].contacts == (True, True)]
+            others = [shapes[index].centred(kinematics, share / height.lift_mm) for index in out]
+            for index, move in zip(out, _along(kinematics, limits, height, others), strict=True):
+                moves[index] = move if move.exact else moves[index]
     return moves
 
 
@@ -192,6 +204,13 @@ class _Shape:
             0.0 if start else rules.lift_mm,
             0.0 if end else rules.lift_mm,
         )
+
+    def centred(self, kinematics: Kinematics, share_per_mm: float) -> _Shape:
+        """With configurations that are drawn towards the middle of the joints' ranges by that share of the way for
+        every mm of height."""
+        arm = kinematics.arm
+        middle = kinematics.independent_of(0.5 * (arm.minimum + arm.maximum))
+        return replace(self, lifts=share_per_mm * (middle - self.configurations))
 
     @property
     def ends_mm(self) -> FloatArray:
