@@ -3,9 +3,9 @@
     python benchmarks/mutants.py                                        # 40 of each module's mutants: about an hour
     python benchmarks/mutants.py planner/motion/speed_limit.py --most 0  # all of one module's
 
-Every comparison, sum, product, number, condition and choice of the larger or smaller is a place for a fault. A mutant is
-made in a copy of the tree, never in the tree itself, and killed by a test that fails, or that takes far longer than it
-did before. Some survivors do what the module did: to tell them from faults that the tests miss takes a look.
+Every comparison, sum, product, number, condition and choice of the larger or smaller is a place for a fault. A mutant
+is made in a copy of the tree, never in the tree itself, and killed by a test that fails, or that takes far longer
+than before. Some survivors do what the module did: to tell them from faults that the tests miss takes a look.
 """
 
 from __future__ import annotations
@@ -143,7 +143,7 @@ def main() -> int:
             drawn = (
                 all_of_it
                 if not options.most
-                else random.Random(options.seed).sample(all_of_it, min(options.most, len(all_of_it)))
+                else random.Random(options.seed).sample(all_of_it, min(options.most, len(all_of_it)))  # noqa: S311
             )
             survivors = 0
             for line, changed, mutated in sorted(drawn):

@@ -1,5 +1,5 @@
-"""How long the order of strokes leaves the way of the lifted pen, beside the best tour that Lin, Kernighan and Helsgaun's
-search finds.
+"""How long the order of strokes leaves the way of the lifted pen, beside the best tour that the search of Lin,
+Kernighan and Helsgaun finds.
 
     pip install elkai  # LKH, free for research; the planner does not use it
     python benchmarks/tours.py

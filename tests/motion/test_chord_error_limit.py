@@ -1,5 +1,5 @@
-"""The chord-error limit: joints that move straight from sample to sample keep the tip near the chord, and no slower than
-that takes."""
+"""The chord-error limit: joints that move straight from sample to sample keep the tip near the chord, and go no slower
+than that takes."""
 
 from __future__ import annotations
 
