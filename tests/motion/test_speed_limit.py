@@ -123,3 +123,12 @@ def test_no_limit_is_far_below_what_chords_allow(turns: list[float], seed: int) 
         )
         lines = shapely.linestrings(np.stack((before, behind), axis=1))
         assert shapely.distance(lines, shapely.points(at)).max() > _CHORD_ERROR_MM
+
+
+def test_a_path_has_its_limits_whatever_lies_beside_it() -> None:
+    random = np.random.default_rng(3)
+    lines = [np.cumsum(random.normal(0.0, 2.0, (count, 2)), axis=0) for count in (2, 6, 3, 9)]
+    fractions = np.linspace(0.1, 0.9, 3)
+    alone = [speeds_mm_s(smooth_paths([line], 0.025), fractions) for line in lines]
+    together = speeds_mm_s(smooth_paths(lines, 0.025), fractions)
+    np.testing.assert_allclose(together, np.concatenate(alone), rtol=1e-6)
