@@ -13,7 +13,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from planner.arrays import FloatArray
 from planner.ragged import starts_of, within
-from planner.spline import cell_polynomials, evaluate, evaluate_at, first_controls, interpolating, weights
+from planner.spline import cell_polynomials, evaluate, evaluate_at, first_controls, interpolating, subdivided, weights
 
 DEGREES = pytest.mark.parametrize("degree", [1, 2, 3, 5])
 FRACTIONS = np.linspace(0, 1, 11)
@@ -112,3 +112,16 @@ def test_interpolating_spline_is_the_not_a_knot_one() -> None:
     sigma = np.linspace(0, 11, 200)
     cell = np.minimum(sigma.astype(np.int64), 10)
     np.testing.assert_allclose(evaluate_at(controls, cell, sigma - cell, 5), known(sigma), atol=1e-9)
+
+
+@DEGREES
+def test_a_subdivided_curve_is_the_same_curve_in_twice_the_cells(degree: int) -> None:
+    n_cells = np.array([3, 1, 4])
+    controls = controls_of(n_cells, degree)
+    finer = subdivided(controls, n_cells, degree)
+    assert finer.shape == (int((2 * n_cells + degree).sum()), 3)
+    whole = evaluate(controls, first_controls(n_cells, degree), FRACTIONS / 2, degree)
+    rest = evaluate(controls, first_controls(n_cells, degree), (1 + FRACTIONS) / 2, degree)
+    halves = evaluate(finer, first_controls(2 * n_cells, degree), FRACTIONS, degree)
+    np.testing.assert_allclose(halves[0::2], whole, atol=1e-12)
+    np.testing.assert_allclose(halves[1::2], rest, atol=1e-12)

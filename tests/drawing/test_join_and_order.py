@@ -137,3 +137,25 @@ def test_random_strokes_come_near_the_known_bound() -> None:
     strokes = list(np.random.default_rng(1).uniform(0, 1, (600, 1, 2)))
     # A random tour of n points in the unit square takes about 0.7124 sqrt(n) at best.
     assert travel(order_strokes(strokes, ORIGIN), ORIGIN) < 0.7124 * np.sqrt(600) * 1.15
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(2, 40))
+def test_a_cut_line_is_joined_again_whatever_the_order_and_direction_of_its_pieces(seed: int, count: int) -> None:
+    """Cut ends that were moved by less than half of the tolerance each: none of them is left."""
+    random = np.random.default_rng(seed)
+    line = np.column_stack((np.arange(2.0 * count + 1), random.uniform(-1.0, 1.0, 2 * count + 1)))
+    pieces = [line[2 * index : 2 * index + 3].copy() for index in range(count)]
+    for piece in pieces:
+        for end in (0, -1):
+            turn = random.uniform(0.0, 2.0 * np.pi)
+            piece[end] += 0.024 * random.uniform() * np.array([np.cos(turn), np.sin(turn)])
+    mixed = [pieces[index][:: random.choice((-1, 1))] for index in random.permutation(count)]
+    (joined,) = join_strokes(mixed, 0.05)
+    if joined[0, 0] > joined[-1, 0]:
+        joined = joined[::-1]
+    assert np.array_equal(joined, np.concatenate(pieces))
+
+
+@pytest.mark.parametrize(("gap", "count"), [(0.0499, 1), (0.0501, 2)])
+def test_ends_are_joined_up_to_the_tolerance_and_no_further(gap: float, count: int) -> None:
+    assert len(join_strokes([np.array([[0.0, 0.0], [1.0, 0.0]]), np.array([[1.0 + gap, 0.0], [2.0, 0.0]])])) == count

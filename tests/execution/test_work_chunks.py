@@ -6,6 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from planner.execution.context import PlanContext
 from planner.execution.work_chunks import StrokeChunk, pieces_of, stroke_chunks, timed_strokes
@@ -15,19 +17,20 @@ from planner.placement.pieces import Piece
 from planner.settings import Method, PlanSettings
 from tests.arms.chains import load_once
 
+_CONTEXT = PlanContext.of(load_once("drawing_arm"), PlanSettings())
+
 
 def test_chunks_are_bounded_and_hold_every_piece_once() -> None:
     sizes = [1500.0, 800.0, 0.0, 4500.0, 3000.0, 900.0, 0.0]
     pieces = [Piece(np.full((2, 2), float(index)), size) for index, size in enumerate(sizes)]
-    cut = list(stroke_chunks(PlanContext.of(load_once("drawing_arm"), PlanSettings()), pieces))
+    cut = list(stroke_chunks(_CONTEXT, pieces))
     assert [[int(points[0, 0]) for points in chunk.strokes] for chunk in cut] == [[0, 1, 2], [3], [4, 5, 6]]
-    assert list(stroke_chunks(PlanContext.of(load_once("drawing_arm"), PlanSettings()), [])) == []
+    assert list(stroke_chunks(_CONTEXT, [])) == []
 
 
 def test_the_stroke_that_cannot_be_drawn_is_the_one_that_is_told() -> None:
     strokes = [np.array([[distance, -20.0], [distance, 20.0]]) for distance in (120.0, 130.0, 900.0, 140.0)]
-    context = PlanContext.of(load_once("drawing_arm"), PlanSettings())
-    made = timed_strokes(StrokeChunk(context, strokes))
+    made = timed_strokes(StrokeChunk(_CONTEXT, strokes))
     assert [isinstance(one, InfeasiblePath) for one in made] == [False, False, True, False]
     assert isinstance(made[2], InfeasiblePath) and made[2].tip_mm[0] == pytest.approx(900.0)
 
@@ -60,3 +63,16 @@ def test_methods_that_go_from_configuration_to_configuration_get_strokes_whole(m
     )
     assert [len(pieces) for pieces in pieces_of(sequential, [stroke, stroke[:1]])] == [1, 1]
     assert len(pieces_of(by_place, [stroke])[0]) > 1
+
+
+@given(st.lists(st.floats(0.0, 1500.0), min_size=1, max_size=400))
+def test_work_is_shared_out_evenly(sizes: list[float]) -> None:
+    """No chunk is more than its share, and none that could have taken the next piece too is left short: workers that
+    each take the next chunk end within one chunk of each other."""
+    pieces = [Piece(np.full((2, 2), float(index)), size) for index, size in enumerate(sizes)]
+    chunks = list(stroke_chunks(_CONTEXT, pieces))
+    works = [sum(sizes[int(points[0, 0])] for points in chunk.strokes) for chunk in chunks]
+    assert sum(len(chunk.strokes) for chunk in chunks) == len(pieces)
+    assert max(works) <= 4000.0
+    weights = [work + 10.0 * len(chunk.strokes) for work, chunk in zip(works, chunks, strict=True)]
+    assert all(weight > 4000.0 - 1500.0 for weight in weights[:-1])

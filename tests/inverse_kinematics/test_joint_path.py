@@ -88,3 +88,17 @@ def test_a_course_with_resting_ends_comes_back_to_sixth_order() -> None:
 
     assert error(20) / error(40) > 40
     assert error(40) < 1e-5
+
+
+@settings(deadline=None)
+@given(n_cells=CELLS, seed=st.integers(0, 2**32 - 1))
+def test_a_subdivided_path_is_the_same_curve_in_twice_the_cells(n_cells: FloatArray, seed: int) -> None:
+    paths = interpolate(n_cells, knots_of(n_cells, seed))
+    finer = paths.subdivided()
+    assert finer.n_cells.tolist() == (2 * paths.n_cells).tolist()
+    fractions = np.linspace(0.0, 1.0, 5)
+    for derivative in range(3):
+        whole = paths.positions(fractions, derivative)
+        halves = finer.positions(fractions, derivative).reshape(len(whole), 2, 5, -1)
+        np.testing.assert_allclose(2**derivative * halves[:, 0, ::2], whole[:, :3], atol=1e-9)
+        np.testing.assert_allclose(2**derivative * halves[:, 1, ::2], whole[:, 2:], atol=1e-9)

@@ -116,7 +116,7 @@ def test_targets_beyond_reach_are_told(arm: Arm) -> None:
 
 
 def test_the_same_arm_has_the_same_configuration_map() -> None:
-    one, other = (model_of(load_arm("drawing_arm")).configuration_map() for _ in range(2))
+    one, other = (model_of(load("drawing_arm")).configuration_map() for load in (load_arm, load_once))
     np.testing.assert_array_equal(one.radii_mm, other.radii_mm)
     np.testing.assert_array_equal(one.configurations, other.configurations)
 

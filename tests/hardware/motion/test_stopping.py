@@ -83,3 +83,46 @@ def test_slow_down_is_the_factor_that_meets_the_limits(arm: Arm, arc: Callable[.
     factor = slow_down(arm, path, 1 / RATE_HZ)
     assert factor > 1
     assert slow_down(arm, path, factor / RATE_HZ) == pytest.approx(1)
+
+
+@pytest.mark.parametrize("sample", [0, 7, 20, 33, 45])
+@pytest.mark.parametrize("slower", [1.0, 2.0, 5.0])
+def test_a_ramp_is_the_shortest_that_keeps_the_limits(
+    arm: Arm, arc: Callable[..., Trajectory], sample: int, slower: float
+) -> None:
+    """Of those that there are, with what comes before and after; a path at its limits takes the longest."""
+    planned = arm.from_file_units(arc().positions)
+    path = interpolate(planned, np.arange(0.0, len(planned), 1 / slower))
+    for ramp, joined in (
+        (brake(arm, path, sample, RATE_HZ), lambda ramp: (interpolate(path, sample + np.arange(-3.0, 1.0)), ramp)),
+        (
+            set_off(arm, path, sample, RATE_HZ),
+            lambda ramp: (path[[sample] * 3], ramp, interpolate(path, sample + len(ramp) / 2 + np.arange(1.0, 5.0))),
+        ),
+    ):
+        assert ramp.at[-1] == pytest.approx(min(sample + len(ramp.points) / 2, len(path) - 1))
+        seconds = len(ramp.points) / RATE_HZ
+        if seconds < 0.8:
+            assert _share_of_limits(arm, np.concatenate(joined(ramp.points))) <= 1.03
+        n = 2 * round(seconds * RATE_HZ / 2) - 2
+        assert n < 10 or seconds == pytest.approx(0.1, abs=0.02) or slower < 5.0
+
+
+@pytest.mark.parametrize("sample", [5, 20, 33])
+def test_setting_off_is_braking_seen_backwards(arm: Arm, arc: Callable[..., Trajectory], sample: int) -> None:
+    path = interpolate(arm.from_file_units(arc().positions), np.arange(0.0, 60.0, 0.2))
+    ramp = set_off(arm, path, sample, RATE_HZ)
+    assert len(ramp.points) / RATE_HZ == pytest.approx(0.1)  # as slow as this path is, no longer one is needed
+    braked = brake(arm, path[::-1], len(path) - 1 - ramp.end, RATE_HZ)
+    assert len(braked.points) == len(ramp.points)
+    there_and_back = np.concatenate((path[sample][None], ramp.points[:-1]))[::-1]
+    np.testing.assert_allclose(braked.points, there_and_back, atol=1e-9)
+
+
+def _share_of_limits(arm: Arm, points: FloatArray) -> float:
+    """The largest share of a limit, in units of how much slower the motion would have to be."""
+    worst, change = 0.0, points
+    for order, limit in enumerate((arm.max_velocity, arm.max_acceleration, arm.max_jerk), 1):
+        change = np.diff(change, axis=0) * RATE_HZ
+        worst = max(worst, float((np.abs(change) / limit).max()) ** (1 / order))
+    return worst
