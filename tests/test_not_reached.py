@@ -8,18 +8,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from planner.timing.limits import Limits
 
 from planner.errors import PlanError
-from planner.kinematics.chain import kinematics_of
+from planner.kinematics.limits import Limits
+from planner.motion.timed_stroke import Contact
 from planner.pipeline import plan
-from planner.redundancy.configuration_map import configuration_map_of
 from planner.settings import CanvasKind, PlanSettings
 from planner.travel import travel_moves
 from planner.travel.branch_change import plan_branch_change
-from planner.travel.travel_moves import Contact, TravelRules
+from planner.travel.travel_moves import TravelRules
 from planner.workspace.canvas import canvas_of
-from tests.arms.chains import load_once
+from tests.arms.chains import kinematics_of, load_once, model_of
 
 OFF_THE_DRAWING = "off the drawing by more than the tolerance, however slow; try a larger --tolerance: "
 STRAYING = "the lifted pen strays by more than the tolerance, however slow; try a larger --tolerance: "
@@ -67,7 +66,7 @@ def test_pen_up_moves_that_slowing_does_not_help_are_told(tmp_path: Path, monkey
 def test_a_change_of_branch_strays_where_its_way_up_or_down_does(monkeypatch: pytest.MonkeyPatch) -> None:
     arm = load_once("drawing_arm")
     tips = np.array([[60.0, -50.0], [110.0, 40.0]])
-    configurations, _ = configuration_map_of(arm).configurations_at(np.column_stack((tips, np.zeros(2))))
+    configurations, _ = model_of(arm).configuration_map().configurations_at(np.column_stack((tips, np.zeros(2))))
     start, end = map(Contact, tips, configurations)
     rules = TravelRules(1.0, 5.0, 30.0, 20.0, 0.05)
     assert plan_branch_change(kinematics_of(arm), Limits.of(arm), rules, start, end).held
@@ -86,7 +85,7 @@ def test_an_order_that_is_not_searched_to_the_end_is_told(
 
 
 def test_a_canvas_by_a_reach_that_is_not_found_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    arm = replace(load_once("drawing_arm"), name="another")  # canvases are remembered by arm
+    arm = replace(load_once("drawing_arm"), name="another")
     monkeypatch.setattr("planner.workspace.canvas._MOST_ITERATIONS", 0)
     with pytest.raises(PlanError, match=r"arm another: .* try --canvas usable"):
-        canvas_of(arm, CanvasKind.OPTIMAL, 5.0)
+        canvas_of(model_of(arm), CanvasKind.OPTIMAL, 5.0)

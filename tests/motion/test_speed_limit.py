@@ -22,7 +22,7 @@ limit holds for as much of the path as a sample period spans."""
 def speeds_mm_s(paths: PenPaths, fractions: FloatArray) -> FloatArray:
     """(total cells, n_fractions) the limit as a speed of the pen."""
     limit = rate_limit(paths, fractions, _SPEED_MM_S, _CHORD_ERROR_MM, _RATE_HZ)
-    slope = paths.points(fractions, 1)
+    slope = paths.positions(fractions, 1)
     return limit * np.hypot(slope[..., 0], slope[..., 1])
 
 
@@ -88,7 +88,7 @@ def test_a_corner_slows_the_pen_near_it_and_nowhere_else(turn_deg: int) -> None:
     paths = corner(np.radians(turn_deg))
     fractions = np.linspace(0.1, 0.9, 5)
     speeds = speeds_mm_s(paths, fractions)
-    away_mm = np.hypot(*np.moveaxis(paths.points(fractions), 2, 0))
+    away_mm = np.hypot(*np.moveaxis(paths.positions(fractions), 2, 0))
     at_corner = 2 * _CHORD_ERROR_MM / np.sin(np.radians(turn_deg) / 2) * _RATE_HZ
     assert 0.9 * min(at_corner, _SPEED_MM_S) <= speeds.min() < _SPEED_MM_S
     reach_mm = 0.5 * _SPEED_MM_S / _RATE_HZ + 0.9  # as far as a chord at full speed, and a cell, may touch the corner
@@ -99,7 +99,7 @@ def test_a_corner_slows_the_pen_near_it_and_nowhere_else(turn_deg: int) -> None:
 def test_the_limit_is_the_same_along_a_path_and_back(turn_deg: int) -> None:
     """What holds at one end of a cell holds at the other end of the same cell of the way back."""
     there = corner(np.radians(turn_deg))
-    back = PenPaths(there.n_cells, there.controls_mm[::-1])
+    back = PenPaths(there.n_cells, there.controls[::-1])
     fractions = np.linspace(0.0, 1.0, 5)[1:-1]
     np.testing.assert_allclose(speeds_mm_s(back, fractions)[::-1, ::-1], speeds_mm_s(there, fractions), rtol=1e-6)
 
@@ -112,7 +112,7 @@ def test_no_limit_is_far_below_what_chords_allow(turns: list[float], seed: int) 
     corners = np.cumsum(lengths[:, None] * np.column_stack((np.cos(heading), np.sin(heading))), axis=0)
     paths = smooth_paths([np.vstack(([0.0, 0.0], corners))], 0.025)
     speeds = speeds_mm_s(paths, np.array([0.25]))[:, 0]
-    way = paths.points(np.linspace(0, 1, _FINE, endpoint=False)).reshape(-1, 2)
+    way = paths.positions(np.linspace(0, 1, _FINE, endpoint=False)).reshape(-1, 2)
     along_mm = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))))
     for cell in np.flatnonzero(speeds < 0.99 * _SPEED_MM_S).tolist():
         half_mm = 0.5 * _STEPS * speeds[cell] / _RATE_HZ

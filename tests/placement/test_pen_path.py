@@ -188,7 +188,7 @@ def test_a_subdivided_path_is_the_same_curve_in_twice_the_cells() -> None:
     assert finer.n_cells.tolist() == (2 * paths.n_cells).tolist()
     fractions = np.linspace(0.0, 1.0, 9)
     for derivative in range(DEGREE):
-        whole = paths.points(fractions, derivative)
-        halves = finer.points(fractions, derivative).reshape(len(whole), 2, len(fractions), 2)
+        whole = paths.positions(fractions, derivative)
+        halves = finer.positions(fractions, derivative).reshape(len(whole), 2, len(fractions), 2)
         np.testing.assert_allclose(2**derivative * halves[:, 0, ::2], whole[:, :5], atol=1e-9)
         np.testing.assert_allclose(2**derivative * halves[:, 1, ::2], whole[:, 4:], atol=1e-9)

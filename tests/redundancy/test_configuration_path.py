@@ -8,15 +8,14 @@ from planner.arrays import FloatArray
 from planner.kinematics.projection import Pins, project
 from planner.redundancy.configuration_map import (
     choice_of_configurations,
-    configuration_map_of,
     sharp_configuration_path,
 )
-from planner.redundancy.configuration_path import configuration_path_cost
 from planner.redundancy.configuration_tests import usable_configurations
 from planner.redundancy.cost import ConfigurationCost
 from planner.redundancy.samples import on_ray
 from planner.settings import ConfigurationWeights
-from tests.arms.chains import load_once
+from tests.arms.chains import load_once, model_of
+from tests.redundancy.path_cost import configuration_path_cost
 
 _VALUES = 120
 _GUESSES = 1
@@ -57,10 +56,10 @@ def cheapest_of_a_grid(cost: ConfigurationCost, radii_mm: FloatArray, near: Floa
 
 
 def test_no_way_through_a_grid_is_much_cheaper() -> None:
-    arm, weights = load_once("drawing_arm"), ConfigurationWeights()
-    cost, radii, samples = choice_of_configurations(arm, weights)
+    model, weights = model_of(load_once("drawing_arm")), ConfigurationWeights()
+    cost, radii, samples = choice_of_configurations(model.kinematics, weights)
     nodes, sharp = sharp_configuration_path(cost, radii, samples)
     ours = configuration_path_cost(cost, nodes, sharp)
     assert ours <= 1.005 * cheapest_of_a_grid(cost, nodes, sharp)
-    rounded = configuration_path_cost(cost, nodes, configuration_map_of(arm, weights).configurations)
+    rounded = configuration_path_cost(cost, nodes, model.configuration_map(weights).configurations)
     assert rounded <= 1.02 * ours

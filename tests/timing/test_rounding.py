@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from planner.timing.limits import Limits
 
 from planner.checking.check import check_trajectory
+from planner.kinematics.limits import Limits
 from planner.pipeline import plan
 from planner.settings import PlanSettings
 from tests.arms.chains import load_once

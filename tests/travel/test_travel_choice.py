@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from planner.timing.limits import Limits
 
 from planner.arrays import FloatArray
+from planner.kinematics.limits import Limits
 from planner.travel.ruckig_profile import RestToRest, rest_to_rest
 from planner.travel.travel_choice import (
     _AIMS,

@@ -148,7 +148,7 @@ def test_the_usable_canvas_cannot_grow_by_a_millimetre(arm: Arm, lift_mm: float,
 
 def test_no_rectangle_of_a_grid_is_much_larger_than_the_usable_canvas(arm: Arm) -> None:
     """All pairs of rows, and for each the longest run of columns that are drawable from one row to the other."""
-    radius = float(configuration_map_of(arm).radii_mm[-1])
+    radius = float(model_of(arm).configuration_map().radii_mm[-1])
     x, y = np.linspace(0.0, radius, 30), np.linspace(-radius, radius, 60)
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     inside = drawable(arm, points, 5.0).reshape(len(x), len(y))
@@ -159,7 +159,7 @@ def test_no_rectangle_of_a_grid_is_much_larger_than_the_usable_canvas(arm: Arm) 
             runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
             longest = max(len(run) for run in runs) - 1
             largest = max(largest, longest * (y[1] - y[0]) * (x[last] - x[first]))
-    assert 0.0 < largest <= 1.01 * area_mm2(usable_canvas(arm, 5.0))
+    assert 0.0 < largest <= 1.01 * area_mm2(usable_canvas(model_of(arm), 5.0))
 
 
 def test_without_joint_limits_in_the_way_the_usable_canvas_is_the_largest_of_the_fields_ring() -> None:
