@@ -21,7 +21,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 from planner.arrays import FloatArray
-from planner.drawing.order import Metric, order_strokes, travel
+from planner.drawing.metric import Metric
+from planner.drawing.order import order_strokes, travel
 from tests.drawing.stroke_sets import METRICS, ORIGIN, STROKE_SETS
 
 _RUNS = 20

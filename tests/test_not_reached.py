@@ -11,11 +11,12 @@ import pytest
 
 from planner.errors import PlanError
 from planner.kinematics.limits import Limits
+from planner.motion.timed_stroke import Contact
 from planner.pipeline import plan
 from planner.settings import CanvasKind, PlanSettings
 from planner.travel import travel_moves
 from planner.travel.branch_change import plan_branch_change
-from planner.travel.travel_moves import Contact, TravelRules
+from planner.travel.travel_moves import TravelRules
 from planner.workspace.canvas import canvas_of
 from tests.arms.chains import kinematics_of, load_once, model_of
 
@@ -84,7 +85,7 @@ def test_an_order_that_is_not_searched_to_the_end_is_told(
 
 
 def test_a_canvas_by_a_reach_that_is_not_found_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    arm = replace(load_once("drawing_arm"), name="another")  # canvases are remembered by arm
+    arm = replace(load_once("drawing_arm"), name="another")
     monkeypatch.setattr("planner.workspace.canvas._MOST_ITERATIONS", 0)
     with pytest.raises(PlanError, match=r"arm another: .* try --canvas usable"):
         canvas_of(model_of(arm), CanvasKind.OPTIMAL, 5.0)

@@ -28,6 +28,7 @@ from planner.redundancy.configuration_tests import usable_configurations
 from planner.redundancy.cost import ConfigurationCost
 from planner.redundancy.samples import on_ray
 from planner.settings import PlanSettings
+from tests.redundancy.path_cost import configuration_path_cost
 
 _STROKES, _LONGER_THAN_MM = 20, 12.0
 _STATION_MM = 1.0
@@ -106,19 +107,6 @@ def stations(stroke: FloatArray) -> tuple[FloatArray, FloatArray]:
     along = np.linspace(0.0, way[-1], int(np.ceil(way[-1] / _STATION_MM)) + 1)
     x, y = (np.interp(along, way, column) for column in stroke.T)
     return along, np.column_stack((x, y, np.zeros(len(along))))
-
-
-def configuration_path_cost(cost: ConfigurationCost, along_mm: FloatArray, configuration_path: FloatArray) -> float:
-    """What a course costs: the mean of its densities over the way."""
-    lengths = np.diff(along_mm)
-    own, steps = (
-        cost.configurations(configuration_path),
-        np.diff(cost.kinematics.arm.complete(configuration_path), axis=0),
-    )
-    total = 0.5 * (own[1:] + own[:-1]) @ lengths + sum(
-        float(cost.steps(step, length)) * length for step, length in zip(steps, lengths.tolist(), strict=True)
-    )
-    return float(total / lengths.sum())
 
 
 def best_of_dense(cost: ConfigurationCost, along_mm: FloatArray, tips_mm: FloatArray, pool: FloatArray) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from planner.arrays import FloatArray
-from planner.drawing.order import STRAIGHT, Metric
+from planner.drawing.metric import STRAIGHT, Metric
 
 ORIGIN = np.zeros(2)
 _COUNT = 300

@@ -115,12 +115,12 @@ def test_chords_are_about_as_many_as_the_bend_asks_for(outline: Outline, toleran
     for bezier in outline.beziers:
         bend = 6 * float(np.hypot(*np.diff(bezier, n=2, axis=0).T).max())
         wanted = max(1, int(np.ceil(np.sqrt(bend / (8 * tolerance_mm)))))
-        assert len(flatten_all([Outline(bezier[None])], IDENTITY, tolerance_mm)[0]) - 1 <= wanted
+        assert len(flatten_all((Outline(bezier[None]),), IDENTITY, tolerance_mm)[0]) - 1 <= wanted
 
 
 def test_a_parabola_takes_the_fewest_chords() -> None:
     """Its second derivative is 120 mm all along, so n equal chords all miss it by 120 / (8 n^2) mm."""
     arch = Outline(np.array([[[0.0, 0.0], [10.0, 20.0], [20.0, 20.0], [30.0, 0.0]]]))
     for tolerance_mm in (0.01, 0.05, 0.3):
-        count = len(flatten_all([arch], IDENTITY, tolerance_mm)[0]) - 1
+        count = len(flatten_all((arch,), IDENTITY, tolerance_mm)[0]) - 1
         assert 15.0 / count**2 <= tolerance_mm < 15.0 / (count - 1) ** 2

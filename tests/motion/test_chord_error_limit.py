@@ -19,10 +19,10 @@ _CHORD_ERROR_MM, _RATE_HZ = 0.002, 100.0
 @pytest.mark.parametrize("rate_hz", [50.0, 100.0])
 def test_a_step_at_the_limit_strays_by_the_chord_error(arm: Arm, rate_hz: float) -> None:
     """By less it would be slower than need be, by more the tip would leave its place."""
-    strokes = [np.array([[90.0, -20.0], [120.0, 10.0], [100.0, 15.0]]), np.array([[95.0, 0.0], [125.0, 0.1]])]
-    splines, infeasible = joint_paths(kinematics_of(arm), references_for(arm, Method.PATH), smooth_paths(strokes, 0.02))
-    assert not infeasible
     kinematics = kinematics_of(arm)
+    strokes = [np.array([[90.0, -20.0], [120.0, 10.0], [100.0, 15.0]]), np.array([[95.0, 0.0], [125.0, 0.1]])]
+    splines, infeasible = joint_paths(kinematics, references_for(arm, Method.PATH), smooth_paths(strokes, 0.02))
+    assert not infeasible
     step = chord_error_limit(kinematics, splines, _CHORD_ERROR_MM, rate_hz) / rate_hz
     half = np.array([0.5])
     joints, slope = splines.positions(half)[:, 0], splines.positions(half, 1)[:, 0]
