@@ -1,8 +1,8 @@
 """LeRobot's calibration of an arm of bus servos: `{"shoulder_pan": {"id": 1, "range_min": 740, ...}, ...}`.
 
 LeRobot counts degrees from the middle of the range that a joint was moved over by hand, which for an SO-101 is the zero
-of its URDF. `homing_offset` is kept by the servo itself, whose counts have it in them already. None of this was tried on
-an arm.
+of its URDF. `homing_offset` is kept by the servo itself, whose counts have it in them already. None of this was tried
+on an arm.
 """
 
 from __future__ import annotations
