@@ -127,7 +127,13 @@ def test_one_joint_moves_slowly_and_others_stand() -> None:
 def test_what_is_refused_changes_nothing() -> None:
     made, _ = jogging("drawing_arm_2022")
     before, values = made.arm, made.values
-    for wrong in (lambda: made.move(500), lambda: made.choose("q9"), lambda: made.stands_at(4000), made.pen_down):
+    refused: list[Callable[[], None]] = [
+        lambda: made.move(500),
+        lambda: made.choose("q9"),
+        lambda: made.stands_at(4000),
+        made.pen_down,
+    ]
+    for wrong in refused:
         with pytest.raises(UsageError):
             wrong()
     assert made.arm is before
