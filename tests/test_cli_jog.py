@@ -8,6 +8,7 @@ import os
 import pty
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -112,6 +113,18 @@ def test_the_pen_goes_straight_up_and_comes_back(name: str) -> None:
     np.testing.assert_allclose(made.tip_mm - before, [0, 0, made.arm.pen.lift_mm], atol=0.5)
     made.pen_down()
     np.testing.assert_allclose(made.tip_mm, before, atol=1e-6)
+
+
+def test_it_begins_where_the_arm_is_parked() -> None:
+    arm = load_arm("drawing_arm_2022")
+    parked = replace(arm, park=tuple((0.3 * arm.minimum + 0.7 * arm.maximum).tolist()))
+    made = Jogging(parked, SimulatedArm(parked, InstantClock()), own_calibration(arm), InstantClock())
+    np.testing.assert_allclose(made.positions, np.array(parked.park))
+    made.start()
+    made.choose("q3")
+    made.move(-5)
+    with pytest.raises(UsageError, match="park"):
+        made.limit(upper=True)
 
 
 def test_one_joint_moves_slowly_and_others_stand() -> None:

@@ -33,7 +33,7 @@ class Jogging:
         self.arm = arm
         self._file, self._driver, self._clock = arm, driver, clock
         self._calibration = calibration
-        self._at: FloatArray = (arm.minimum + arm.maximum) / 2 if arm.park is None else arm.park.copy()
+        self._at: FloatArray = (arm.minimum + arm.maximum) / 2 if arm.park is None else np.array(arm.park)
         self._below: FloatArray | None = None
         self.joint = 0
 

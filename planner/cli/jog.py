@@ -195,7 +195,7 @@ def _write(options: argparse.Namespace, arm: Arm) -> None:
     from planner.arms.arm_file import read_arm_file
     from planner.arms.arm_text import arm_toml
     from planner.errors import ArmFileError
-    from planner.trajectory import written_aside
+    from planner.files import written_aside
 
     if not options.output:
         raise UsageError("nowhere to save it: give -o ARM.toml")
