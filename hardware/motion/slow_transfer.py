@@ -41,7 +41,7 @@ def slow_transfer(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float)
     slowed_hz = rate_hz / _SHARE
     for heights_mm in (np.where(low, arm.pen.lift_mm, -np.inf), *(arm.pen.lift_mm * n * np.ones(2) for n in _LIFTS)):
         up, down = (lift(arm, end, slowed_hz, height_mm) for end, height_mm in zip(ends, heights_mm, strict=True))
-        line = _straight(arm, np.concatenate((start[None], up))[-1], np.concatenate((goal[None], down))[-1], rate_hz)
+        line = straight(arm, np.concatenate((start[None], up))[-1], np.concatenate((goal[None], down))[-1], rate_hz)
         points = np.concatenate((up, line, np.concatenate((goal[None], down))[-2::-1]))
         heights = link_nodes_mm(arm, line)[:, :, 2]
         clear_of_paper = heights.min() >= min(-_GRAZE_MM, link_nodes_mm(arm, ends)[:, :, 2].min())
@@ -63,10 +63,12 @@ def come_from(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -> 
     if np.all((start >= arm.minimum - _BEYOND) & (start <= arm.maximum + _BEYOND)):
         with suppress(PlanError):
             return slow_transfer(arm, start, goal, rate_hz)
-    return _straight(arm, start, goal, rate_hz)
+    return straight(arm, start, goal, rate_hz)
 
 
-def _straight(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -> FloatArray:
+def straight(arm: Arm, start: FloatArray, goal: FloatArray, rate_hz: float) -> FloatArray:
+    """Set points (n, n_joints) from rest at `start`, itself left out, to rest at `goal`, at a fifth of every limit,
+    wherever that leads."""
     n = max(math.ceil(least_duration_s(arm, np.abs(goal - start) / _SHARE) * rate_hz), 1)
     points: FloatArray = start + minimum_jerk(n) * (goal - start)
     points[-1] = goal

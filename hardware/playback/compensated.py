@@ -13,7 +13,7 @@ from hardware.compensation.servo_values import Calibration
 from hardware.compensation.take_up import taken_up
 from hardware.playback.program import Program
 from planner.arms.arm import Arm
-from planner.arms.slack import delays_s, half_slack
+from planner.arms.slack import half_slack, leads_s
 from planner.arrays import FloatArray
 from planner.trajectory import TRAVELLING
 
@@ -28,13 +28,13 @@ def compensated(arm: Arm, program: Program, calibration: Calibration) -> Program
     nothing changes: the slack in its file is a guess, and an arm with less of it would draw worse for it. Set points
     stay within the ranges of servos, and the joints' limits of speed and acceleration hold.
     """
-    slack, delay_s = half_slack(arm), delays_s(arm)
+    slack, lead_s = half_slack(arm), leads_s(arm, 1 / program.rate_hz)
     if arm.accuracy is None:
         return program
-    rest = int(np.ceil((_SETTLING_S + delay_s.max()) * program.rate_hz))
+    rest = int(np.ceil((_SETTLING_S + lead_s.max()) * program.rate_hz))
     meant = np.pad(program.positions, ((rest, rest), (0, 0)), mode="edge")
     commanded = taken_up(meant, slack, arm.max_velocity, arm.max_acceleration, 1 / program.rate_hz, rest)
-    sent = np.clip(led(commanded, delay_s * program.rate_hz), *calibration.reach.T)
+    sent = np.clip(led(commanded, lead_s * program.rate_hz), *calibration.reach.T)
     return replace(
         program,
         positions=sent,

@@ -27,6 +27,14 @@ def delays_s(arm: Arm) -> FloatArray:
     )
 
 
+def leads_s(arm: Arm, period_s: float) -> FloatArray:
+    """(n_joints,) how long before its time a joint is to be told where to be, by set points `period_s` apart: what a
+    hobby servo sees when it looks was told half a period ago on average."""
+    looks = np.array([joint.servo is not None for joint in arm.joints])
+    leads: FloatArray = delays_s(arm) + looks * period_s / 2
+    return leads
+
+
 def _of(joint: Joint) -> float:
     if joint.servo is not None:
         servo = joint.servo

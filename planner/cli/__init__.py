@@ -99,6 +99,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.predict import predict
 
             return predict(rest)
+        case "jog":
+            from planner.cli.jog import jog
+
+            return jog(rest)
         case "arm":
             from planner.cli.arm import arm
 

@@ -16,7 +16,7 @@ from hardware.playback.request import Request
 KEYS = "space or p pauses and resumes, q or Ctrl-C stops and parks, x or Esc stops at once and holds"
 
 _PAUSE, _STOP, _EMERGENCY_STOP = b" pP", b"qQ", (b"x", b"X", b"\x1b")
-_SEQUENCES = re.compile(rb"\x1b(\[[0-?]*[ -/]*[@-~]|O.)")
+SEQUENCES = re.compile(rb"\x1b(\[[0-?]*[ -/]*[@-~]|O.)")
 """What arrows and function keys arrive as, which begins as Esc does."""
 _SEVERITY = (Request.GO, Request.PAUSE, Request.STOP, Request.EMERGENCY_STOP)
 
@@ -45,7 +45,7 @@ class Controls:
         return self._request
 
     def _press(self, keys: bytes) -> None:
-        keys = _SEQUENCES.sub(b"", keys)
+        keys = SEQUENCES.sub(b"", keys)
         for key in (keys[place : place + 1] for place in range(len(keys))):
             if key in _EMERGENCY_STOP:
                 self._demand(Request.EMERGENCY_STOP)

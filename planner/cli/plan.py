@@ -34,6 +34,7 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan pattern --arm ARM    a trajectory of marks to calibrate an arm with
   plan calibrate ARM        an arm file from marks that the arm made
   plan predict traj.csv     how well an arm is going to draw
+  plan jog --arm ARM        one joint at a time, on the first day of an arm
   plan ports                list the serial devices that are plugged in
   plan check traj.csv       an independent check result on a trajectory
   plan plot traj.csv -o F   pictures of a trajectory
@@ -135,7 +136,7 @@ def _parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
     parser.usage = (
         "plan DRAWING.svg [-o traj.csv] [options]\n"
-        "       plan batch|run|pattern|measure|calibrate|predict|ports|check|plot|compare|arm ..."
+        "       plan batch|run|pattern|measure|calibrate|predict|jog|ports|check|plot|compare|arm ..."
     )
     parser.add_argument(
         "drawing", type=input_file, metavar="DRAWING.svg", help="the drawing, gzipped or not; - for standard input"

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from planner.arms.arm import Arm
-from planner.arms.slack import FRAME_S, delays_s, half_slack
+from planner.arms.slack import FRAME_S, delays_s, half_slack, leads_s
 from planner.arrays import FloatArray, IntArray
 from planner.error_model.believed import believed
 from planner.error_model.calibration.parameters import SLACK_SD, Parameters
@@ -219,7 +219,7 @@ def _causes(arm: Arm, played: Played, arms: _Arms, line: _Line, square: float) -
             ),
         ),
     ]
-    shift = delays_s(arm) * played.rate_hz
+    shift = leads_s(arm, 1 / played.rate_hz) * played.rate_hz
     rows = np.arange(len(played.meant))
     for k, joint in enumerate(arm.joints):
         if not few.slack[:, k].any():

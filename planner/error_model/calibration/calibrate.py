@@ -22,9 +22,10 @@ from planner.settings import WHERE_SLACK_IS_TAKEN_UP
 FEWEST_MARKS = 12
 _UNTOLD = 0.8
 """Of its prior sd: a parameter that keeps more is not told by the marks."""
-_BRISK_MM_S = 30.0
+_BRISK_MM_S = 25.0
 """Faster, and servos told by pulses, which lag each in its own way and look for pulses each in its own time, draw
-visibly worse: 0.15 mm at this speed, 0.25 at 80 mm/s."""
+visibly worse. Marks are made at rest and tell nothing of lags, so that a pen may be up to 15 ms late or early: 0.4 mm
+along its line at this speed."""
 _TOUCHED_AGAIN = 2
 """So often it is told anew, with the arm as it is known by then, when the pen came to the paper."""
 _SWAPPED = 0.3

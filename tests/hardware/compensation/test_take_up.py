@@ -17,7 +17,7 @@ from hardware.playback.compensated import compensated, led
 from hardware.playback.program import Program
 from planner.arms.accuracy import Accuracy
 from planner.arms.arm_file import load_arm
-from planner.arms.slack import delays_s, half_slack
+from planner.arms.slack import half_slack, leads_s
 from planner.arrays import FloatArray
 
 PERIOD_S = 0.01
@@ -112,9 +112,11 @@ def test_a_programme_is_led_and_kept_within_what_servos_may_be_told() -> None:
     assert (made.stroke[:rest] == -1).all()
     assert (made.positions[0] == positions[0]).all()
     np.testing.assert_allclose(made.positions[-1], positions[-1], atol=1e-12)
-    # Half-way up, the servo is told to be where the joint is to be its delay later, and its slack further.
+    # Half-way up, the servo is told to be where the joint is to be its delay and half a set point later, and its slack
+    # further.
     k = rest + 150
-    lead = 100 * delays_s(arm)[0]
+    lead = 100 * leads_s(arm, 0.01)[0]
+    assert lead == pytest.approx(100 * 0.03 + 0.5)
     assert made.positions[k, 0] == pytest.approx(
         np.interp(k + lead, np.arange(len(made.meant)), made.meant[:, 0]) + half_slack(arm)[0], abs=1e-9
     )
