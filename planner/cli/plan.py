@@ -10,9 +10,6 @@ from planner.cli.interrupts import interrupts_remembered
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import (
-    MAX_RATE_HZ,
-    MIN_RATE_HZ,
-    MIN_TOLERANCE_MM,
     angle_deg,
     configuration_weights,
     length_mm,
@@ -23,7 +20,8 @@ from planner.cli.report import check_report, write_report_of
 from planner.cli.terminal import print_summary, print_warnings, progress
 from planner.cli.workers import add_workers_option
 from planner.files import STANDARD
-from planner.settings import CanvasKind, Method, PlanSettings
+from planner.progress import of_all_stages
+from planner.settings import MAX_RATE_HZ, MIN_RATE_HZ, MIN_TOLERANCE_MM, CanvasKind, Method, PlanSettings
 
 _DESCRIPTION = """\
 Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a trajectory of joint positions.
@@ -58,19 +56,6 @@ exit codes: 0 done; 1 a check found fault; 2 unusable input or usage; 3 cannot b
 4 hardware fault; 70 a defect of the planner; 130 interrupted"""
 
 
-_WORK = {
-    "reading": 5,
-    "placing": 3,
-    "joining": 2,
-    "ordering strokes": 10,
-    "drawing motions": 50,
-    "travels": 25,
-    "report": 5,
-}
-"""The stages of a plan in their order, and roughly what share of the time each takes."""
-_FINE = 100
-
-
 def plan(arguments: list[str]) -> int:
     """Plan one drawing. Errors: PlannerError."""
     options = _parser().parse_args(arguments)
@@ -88,7 +73,7 @@ def plan(arguments: list[str]) -> int:
 
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
-            show(stage, *_of_all(stage, done, total))
+            show(stage, *of_all_stages(stage, done, total))
 
         planned = plan_drawing(drawing, settings, report, options.workers)
         raise_if_interrupted()
@@ -102,13 +87,6 @@ def plan(arguments: list[str]) -> int:
         wrote = [f"wrote {file}" for file in written if str(file) != STANDARD]
         print_summary([*planned.summary.lines(), *wrote], target)
     return 0
-
-
-def _of_all(stage: str, done: int, total: int) -> tuple[int, int]:
-    """How much of all stages is done, and how much there is: one bar, and one clock for the time left."""
-    names = list(_WORK)
-    before = sum(_WORK[name] for name in names[: names.index(stage)])
-    return round(_FINE * (before + _WORK[stage] * done / max(total, 1))), _FINE * sum(_WORK.values())
 
 
 def settings_of(options: argparse.Namespace) -> PlanSettings:

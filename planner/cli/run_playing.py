@@ -21,9 +21,10 @@ from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.cli.controls import KEYS, controls
 from planner.cli.keeping import Keeping
-from planner.cli.terminal import Show, print_note, print_warnings, progress
+from planner.cli.terminal import print_note, print_warnings, progress
 from planner.error_model.random_arm import random_arm
 from planner.errors import HardwareError, UsageError
+from planner.progress import Show
 
 if TYPE_CHECKING:
     from hardware.simulation.mujoco_arm import MujocoArm
