@@ -18,11 +18,12 @@ def number_in(
     """The value as a float. Errors: UsageError unless it is a finite number in the range; zero counts with `zero`."""
     if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
         raise UsageError(f"{name} is a finite number, not {value!r:.40}")
+    value = float(value)
     if not minimum <= value <= maximum or (value == 0 and not zero):
         least = f"at least {minimum:g}" if minimum or zero else "positive"
         most = "" if maximum == math.inf else f" and at most {maximum:g}"
-        raise UsageError(f"{name} {float(value):g} has to be {least}{most}")
-    return float(value)
+        raise UsageError(f"{name} {value:g} has to be {least}{most}")
+    return value
 
 
 def one_of(name: str, value: object, choices: type[Choice]) -> Choice:

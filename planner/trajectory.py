@@ -10,13 +10,13 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, cast
+from typing import IO, TYPE_CHECKING, cast
 
 import numpy as np
 
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import BoolArray, ByteArray, FloatArray, IntArray
-from planner.errors import OutputError, TrajectoryFileError
+from planner.errors import OutputError, TrajectoryFileError, UsageError
 from planner.files import STANDARD_OUTPUT_DESCRIPTOR, is_standard_output
 from planner.head import (
     LONGEST_LINE,
@@ -29,6 +29,9 @@ from planner.head import (
     read_head,
     shown,
 )
+
+if TYPE_CHECKING:
+    import pandas
 
 TRAVELLING = -1
 """Value of `stroke` while the pen is travelling, lifting or lowering."""
@@ -73,6 +76,25 @@ class Trajectory:
     placement: Placement = NOTHING_TOLD
     left_out: LeftOut = NOTHING_LEFT_OUT
     paper: PaperPose = BASE_PLANE
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Trajectory:
+        """Read a trajectory file. Errors: TrajectoryFileError with the line."""
+        return read_trajectory(Path(path))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the file, whole or not at all. Errors: OutputError."""
+        write_trajectory(self, Path(path))
+
+    def to_frame(self) -> pandas.DataFrame:
+        """The samples as a pandas data frame with the columns of the file. Errors: UsageError where pandas is not
+        installed."""
+        try:
+            import pandas
+        except ImportError:
+            raise UsageError("a data frame needs pandas: pip install 'drawing-arm-planner[frame]'") from None
+        joints = dict(zip(self.columns, self.positions.T, strict=True))
+        return pandas.DataFrame({"t_s": self.times_s, **joints, "pen": self.pen.astype(int), "stroke": self.stroke})
 
     def line(self, sample: int) -> int:
         """Line of a sample in its file, counted from 1."""

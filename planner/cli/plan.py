@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from planner import DISTRIBUTION, __version__
 from planner.cli.files import STANDARD_INPUT, input_file, output_file
 from planner.cli.interrupts import interrupts_remembered
 from planner.cli.output import check_target
@@ -53,7 +54,7 @@ examples:
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
 
 exit codes: 0 done; 1 a check found fault; 2 unusable input or usage; 3 cannot be planned;
-4 hardware fault; 70 a defect of the planner; 130 interrupted"""
+4 hardware fault; 70 a defect of the planner, or a damaged installation; 130 interrupted"""
 
 
 def plan(arguments: list[str]) -> int:
@@ -117,6 +118,9 @@ def _parser() -> Parser:
     )
     parser.add_argument(
         "drawing", type=input_file, metavar="DRAWING.svg", help="the drawing, gzipped or not; - for standard input"
+    )
+    parser.add_argument(
+        "--version", action="version", version=f"{DISTRIBUTION} {__version__}", help="print name and version"
     )
     parser.add_argument(
         "-o",
