@@ -149,7 +149,7 @@ def _worth_hiring(workers: Workers, drawing_file: DrawingSource) -> Workers:
     """The workers, or none beside this process where a drawing is too small for them."""
     try:
         n_bytes = len(drawing_file.content) if isinstance(drawing_file, SvgInMemory) else drawing_file.stat().st_size
-    except OSError:  # its reader says what is wrong with it
+    except (OSError, ValueError):  # its reader says what is wrong with it
         return ALONE
     return ALONE if n_bytes < _SMALL_BYTES and workers.cluster is None else workers
 
