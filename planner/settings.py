@@ -64,9 +64,21 @@ joint that lags makes of the line goes with its speed, and one at rest floats in
 class PlanSettings:
     """Settings of one plan. Errors: UsageError for a value that means nothing.
 
-    speed_mm_s: cap on the pen's speed on the paper, None for the arm's own. lowering_speed_mm_s: cap on its vertical
-    speed when it comes down. dwell_s: rest on the paper after lowering. lift_mm: travel height, None for the arm's own.
-    weights: None for the arm's own.
+    Attributes:
+        arm: The name of an arm, or of its ``.toml`` file.
+        method: How configurations are found.
+        rate_hz: Samples a second, 50 to 10 000.
+        tolerance_mm: How far the pen may be off the drawing.
+        speed_mm_s: Cap on the pen's speed on the paper, None for the arm's own.
+        lowering_speed_mm_s: Cap on its vertical speed when it comes down.
+        dwell_s: Rest on the paper after lowering.
+        lift_mm: Travel height, None for the arm's own.
+        canvas: The rectangle of the paper that is drawn on.
+        fit: Whether the drawing is scaled to the canvas, or keeps its true size.
+        margin_mm: Kept free along the edges of the canvas.
+        rotate_deg: How far the drawing is turned before it is placed.
+        skip_unreachable: Leave out what the arm cannot reach, and say so, instead of failing.
+        weights: What method `path` spends the arm's redundancy on, None for the arm's own.
     """
 
     arm: str = "drawing_arm"

@@ -49,17 +49,19 @@ _LARGEST = 1e9
 class Trajectory:
     """Samples at a fixed rate, first and last at rest.
 
-    columns: names of the joint columns, such as "q1_deg" or "d3_mm", in chain order.
-    positions: (n_samples, n_joints) in the units that the column names say.
-    pen: (n_samples,) True while the tip is on the paper.
-    stroke: (n_samples,) index of the stroke being drawn, or TRAVELLING.
-    svg_to_arm_mm: (a, b, c, d, e, f) from SVG user units to arm millimetres,
-        x = a u + c v + e, y = b u + d v + f.
-    decimals: as `positions`, how many decimals each has in the file that it was read from; None where it was not.
-    first_line: the line that its first sample has in that file, for messages that name lines; None where there is no
-        such file: it is then the line that it would be written to.
-    placement: what the header tells of where the drawing went. left_out: what was not drawn on purpose.
-    paper: where the paper lies that arm millimetres are counted on, in the frame of the base.
+    Attributes:
+        columns: Names of the joint columns, such as "q1_deg" or "d3_mm", in chain order.
+        positions: (n_samples, n_joints) in the units that the column names say.
+        pen: (n_samples,) True while the tip is on the paper.
+        stroke: (n_samples,) index of the stroke being drawn, or TRAVELLING, -1.
+        svg_to_arm_mm: (a, b, c, d, e, f) from SVG user units to arm millimetres,
+            x = a u + c v + e, y = b u + d v + f.
+        decimals: As `positions`, how many decimals each has in the file that it was read from; None where it was not.
+        first_line: The line that its first sample has in that file, for messages that name lines; None where there is
+            no such file: it is then the line that it would be written to.
+        placement: What the header tells of where the drawing went.
+        left_out: What was not drawn on purpose.
+        paper: Where the paper lies that arm millimetres are counted on, in the frame of the base.
     """
 
     arm: str
@@ -118,10 +120,12 @@ class Trajectory:
 
     @property
     def n_samples(self) -> int:
+        """How many samples there are."""
         return int(self.positions.shape[0])
 
     @property
     def duration_s(self) -> float:
+        """From the first sample to the last."""
         return max(self.n_samples - 1, 0) / self.rate_hz
 
     @property

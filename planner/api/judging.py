@@ -39,7 +39,7 @@ def check(
         tolerance_mm: How far the pen may be off the drawing.
 
     Returns:
-        The result: ``passed``, ``findings``, ``faults``; ``print(result)`` shows a line a law.
+        The findings, one a law; ``passed`` sums them up, and ``print(result)`` shows them.
 
     Raises:
         TrajectoryFileError, DrawingError, UnknownArm, ArmFileError: A file cannot be used.
@@ -73,14 +73,15 @@ def compare(
 
     Args:
         drawing: The targets are points along it, as it would be placed. Or, in its place:
-        targets: places for the pen, (n, 2) or (n, 3), mm from the base of the arm; or
-        random: as many places on the paper as this, drawn at random with `seed`.
+        targets: Places for the pen, (n, 2) or (n, 3), mm from the base of the arm; or
+        random: As many places on the paper as this, drawn at random.
+        seed: Of the random places.
         arm: As of :func:`planner.plan`.
         settings, options: As of :func:`planner.plan`; placement and motion are of drawings.
         progress: As of :func:`planner.plan`.
 
     Returns:
-        The comparison: ``results``, one a method; ``print(comparison)`` shows the table.
+        The figures of every method; ``print(comparison)`` shows them as a table.
 
     Raises:
         UsageError: An argument means nothing.

@@ -30,8 +30,12 @@ _FRAME_PIXELS = 560
 class Plan:
     """A planned drawing. In a notebook it shows itself as a film.
 
-    trajectory: the samples. summary: counts, lengths and times. drawing: as it was read. arm, settings: what it was
-    planned for and how.
+    Attributes:
+        trajectory: The samples.
+        summary: Counts, lengths, times and warnings; ``summary.lines()`` are to read.
+        drawing: As it was read.
+        arm: What it was planned for.
+        settings: How it was planned.
     """
 
     trajectory: Trajectory
