@@ -6,6 +6,6 @@ from pathlib import Path
 
 from planner import plan
 
-planned = plan(Path(__file__).with_name("harbour.svg"), arm="so101", progress=True)
+planned = plan(Path(__file__).with_name("harbour.svg"), arm="scara", progress=True)
 planned.film("harbour.html")
 planned.film("harbour.gif", speed_factor=20, fps=5)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from planner.api.result import Plan
     from planner.errors import (
         ArmFileError,
+        CalibrationError,
         DoesNotFit,
         DrawingError,
         HardwareError,
@@ -38,6 +39,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "ArmFileError",
+    "CalibrationError",
     "CanvasKind",
     "ConfigurationWeights",
     "DoesNotFit",

@@ -17,7 +17,7 @@ class PlanOptions(TypedDict, total=False):
     method: str
     rate_hz: float
     tolerance_mm: float
-    speed_mm_s: float
+    speed_mm_s: float | None
     lowering_speed_mm_s: float
     dwell_s: float
     lift_mm: float | None
@@ -26,7 +26,7 @@ class PlanOptions(TypedDict, total=False):
     margin_mm: float
     rotate_deg: float
     skip_unreachable: bool
-    weights: ConfigurationWeights | Mapping[str, float]
+    weights: ConfigurationWeights | Mapping[str, float] | None
 
 
 def settings_with(settings: PlanSettings | None, arm: str | None, options: PlanOptions) -> PlanSettings:
