@@ -8,7 +8,13 @@ from sphinx.application import Sphinx
 from sphinx.writers.html5 import HTML5Translator
 
 project = "Drawing-arm planner"
-extensions = ["myst_parser"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+napoleon_use_ivar = True
+nitpick_ignore_regex = [
+    ("py:.*", r"(?!planner\.\w+$).*")
+]  # types of other libraries and of the private parts have no pages
 myst_enable_extensions = ["dollarmath"]
 myst_fence_as_directive = {"math"}  # so that GitHub shows the formulas too
 myst_heading_anchors = 3

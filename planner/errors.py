@@ -22,6 +22,14 @@ class UsageError(PlannerError):
     """An option or a combination of options that means nothing."""
 
 
+class UnknownOption(UsageError, TypeError):
+    """A keyword that a function does not take."""
+
+    def __init__(self, name: str, known: Sequence[str]) -> None:
+        self.name, self.known = name, tuple(known)
+        super().__init__(f"unknown option '{name}'; known options: {', '.join(self.known)}")
+
+
 class DrawingError(PlannerError):
     """A drawing that cannot be read, or holds nothing that a pen can draw."""
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain, islice, pairwise
-from pathlib import Path
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from planner.drawing.flatten import extent, flatten_all
 from planner.drawing.join import join_strokes
 from planner.drawing.metric import Metric
 from planner.drawing.order import ordered
+from planner.drawing.source import DrawingSource, SvgInMemory
 from planner.drawing.svg import read_drawing
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
 from planner.execution.context import PlanContext
@@ -71,11 +71,17 @@ class Plan:
     drawing: Drawing
 
 
-def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Workers = ALONE) -> Plan:
-    """Plan one drawing. The result is the same whoever does the work. Errors: PlannerError, before any result
-    exists."""
+def plan(
+    drawing_file: DrawingSource,
+    settings: PlanSettings,
+    report: Report,
+    workers: Workers = ALONE,
+    arm: Arm | None = None,
+) -> Plan:
+    """Plan one drawing. The result is the same whoever does the work. arm: None for the one that the settings name.
+    Errors: PlannerError, before any result exists."""
     report("reading", 0, 1)
-    context = PlanContext.of(load_arm(settings.arm), settings)
+    context = PlanContext.of(arm or load_arm(settings.arm), settings)
     model, arm = context.model, context.model.arm
     lift_mm = _lift_mm(arm, settings)
     with executor_of(_worth_hiring(workers, drawing_file), context.make_ready) as executor:
@@ -99,7 +105,9 @@ def plan(drawing_file: Path, settings: PlanSettings, report: Report, workers: Wo
     return Plan(trajectory, _summary(trajectory, model, timed, scale, size_mm, warnings), drawing)
 
 
-def placed_strokes(drawing_file: Path, model: ArmModel, settings: PlanSettings) -> tuple[list[FloatArray], list[str]]:
+def placed_strokes(
+    drawing_file: DrawingSource, model: ArmModel, settings: PlanSettings
+) -> tuple[list[FloatArray], list[str]]:
     """Strokes (n, 2) in arm mm, placed and in the order that they are planned in, and what was left out on the way.
     Errors: PlannerError."""
     lift_mm = _lift_mm(model.arm, settings)
@@ -141,13 +149,13 @@ def _require_bounded(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSett
     require_bounded(whole_s, settings.rate_hz, "the plan", f"{advice}, or a lower --rate")
 
 
-def _worth_hiring(workers: Workers, drawing_file: Path) -> Workers:
+def _worth_hiring(workers: Workers, drawing_file: DrawingSource) -> Workers:
     """The workers, or none beside this process where a drawing is too small for them."""
     try:
-        is_small = drawing_file.stat().st_size < _SMALL_BYTES
-    except OSError:  # its reader says what is wrong with it
+        n_bytes = len(drawing_file.content) if isinstance(drawing_file, SvgInMemory) else drawing_file.stat().st_size
+    except (OSError, ValueError):  # its reader says what is wrong with it
         return ALONE
-    return ALONE if is_small and workers.cluster is None else workers
+    return ALONE if n_bytes < _SMALL_BYTES and workers.cluster is None else workers
 
 
 def _placed(
@@ -354,7 +362,7 @@ def _travel_moves(
 
 def _assembled(
     arm: Arm,
-    drawing_file: Path,
+    drawing_file: DrawingSource,
     settings: PlanSettings,
     svg_to_arm: FloatArray,
     placement: Placement,

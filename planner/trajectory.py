@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, cast
+from typing import IO, TYPE_CHECKING, cast
 
 import numpy as np
 
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import BoolArray, ByteArray, FloatArray, IntArray
-from planner.errors import TrajectoryFileError
+from planner.errors import TrajectoryFileError, UsageError
 from planner.files import written_aside
 from planner.head import (
     LONGEST_LINE,
@@ -24,6 +25,9 @@ from planner.head import (
     read_head,
     shown,
 )
+
+if TYPE_CHECKING:
+    import pandas
 
 TRAVELLING = -1
 """Value of `stroke` while the pen is travelling, lifting or lowering."""
@@ -41,17 +45,19 @@ _LARGEST = 1e9
 class Trajectory:
     """Samples at a fixed rate, first and last at rest.
 
-    columns: names of the joint columns, such as "q1_deg" or "d3_mm", in chain order.
-    positions: (n_samples, n_joints) in the units that the column names say.
-    pen: (n_samples,) True while the tip is on the paper.
-    stroke: (n_samples,) index of the stroke being drawn, or TRAVELLING.
-    svg_to_arm_mm: (a, b, c, d, e, f) from SVG user units to arm millimetres,
-        x = a u + c v + e, y = b u + d v + f.
-    decimals: as `positions`, how many decimals each has in the file that it was read from; None where it was not.
-    first_line: the line that its first sample has in that file, for messages that name lines; None where there is no
-        such file: it is then the line that it would be written to.
-    placement: what the header tells of where the drawing went. left_out: what was not drawn on purpose.
-    paper: where the paper lies that arm millimetres are counted on, in the frame of the base.
+    Attributes:
+        columns: Names of the joint columns, such as "q1_deg" or "d3_mm", in chain order.
+        positions: (n_samples, n_joints) in the units that the column names say.
+        pen: (n_samples,) True while the tip is on the paper.
+        stroke: (n_samples,) index of the stroke being drawn, or TRAVELLING, -1.
+        svg_to_arm_mm: (a, b, c, d, e, f) from SVG user units to arm millimetres,
+            x = a u + c v + e, y = b u + d v + f.
+        decimals: As `positions`, how many decimals each has in the file that it was read from; None where it was not.
+        first_line: The line that its first sample has in that file, for messages that name lines; None where there is
+            no such file: it is then the line that it would be written to.
+        placement: What the header tells of where the drawing went.
+        left_out: What was not drawn on purpose.
+        paper: Where the paper lies that arm millimetres are counted on, in the frame of the base.
     """
 
     arm: str
@@ -68,6 +74,25 @@ class Trajectory:
     placement: Placement = NOTHING_TOLD
     left_out: LeftOut = NOTHING_LEFT_OUT
     paper: PaperPose = BASE_PLANE
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> Trajectory:
+        """Read a trajectory file. Errors: TrajectoryFileError with the line."""
+        return read_trajectory(Path(path))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the file, whole or not at all. Errors: OutputError."""
+        write_trajectory(self, Path(path))
+
+    def to_frame(self) -> pandas.DataFrame:
+        """The samples as a pandas data frame with the columns of the file. Errors: UsageError where pandas is not
+        installed."""
+        try:
+            import pandas
+        except ImportError:
+            raise UsageError("a data frame needs pandas: pip install 'drawing-arm-planner[frame]'") from None
+        joints = dict(zip(self.columns, self.positions.T, strict=True))
+        return pandas.DataFrame({"t_s": self.times_s, **joints, "pen": self.pen.astype(int), "stroke": self.stroke})
 
     def line(self, sample: int) -> int:
         """Line of a sample in its file, counted from 1."""
@@ -91,10 +116,12 @@ class Trajectory:
 
     @property
     def n_samples(self) -> int:
+        """How many samples there are."""
         return int(self.positions.shape[0])
 
     @property
     def duration_s(self) -> float:
+        """From the first sample to the last."""
         return max(self.n_samples - 1, 0) / self.rate_hz
 
     @property

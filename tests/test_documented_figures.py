@@ -9,10 +9,9 @@ import pytest
 
 from planner.arms import file_section
 from planner.arms.arm_file import known_arms, load_arm
-from planner.cli import quantities
 from planner.inverse_kinematics import dls, guesses, nlp
 from planner.redundancy import cost
-from planner.settings import PlanSettings
+from planner.settings import MIN_RATE_HZ, PlanSettings
 from planner.workspace.canvas import usable_canvas
 from tests.arms.chains import model_of
 
@@ -29,7 +28,7 @@ _FIGURES = [
     ("arms.md", r"lengths together are (\d+) m", file_section.LONGEST_MM / 1000),
     ("commands.md", r"time counts for a (twentieth) of", cost._LEAST_TIME),
     ("commands.md", r"--tolerance LENGTH` .*?\| ([\d.]+) mm", PlanSettings().tolerance_mm),
-    ("commands.md", r"--rate HZ` \| samples per second, (\d+) or more", quantities.MIN_RATE_HZ),
+    ("commands.md", r"--rate HZ` \| samples per second, (\d+) or more", MIN_RATE_HZ),
 ]
 
 _WORDS = {"twentieth": 1 / 20}

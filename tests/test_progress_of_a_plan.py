@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 from pathlib import Path
 
-from planner.cli.plan import _WORK, _of_all
 from planner.pipeline import plan
+from planner.progress import STAGES, of_all_stages
 from planner.settings import PlanSettings
 
 
@@ -16,8 +16,8 @@ def test_the_bar_goes_through_all_stages_and_never_back(tmp_path: Path) -> None:
     told: list[tuple[str, int, int]] = []
     plan(drawing, PlanSettings(), lambda *now: told.append(now))
     stages = list(dict.fromkeys(stage for stage, _, _ in told))
-    assert stages == [stage for stage in _WORK if stage != "report"]
+    assert stages == [stage for stage in STAGES if stage != "report"]
     assert len([stage for stage, _, _ in told if stage == "reading"]) > 3
-    shares = [done / total for done, total in (_of_all(*now) for now in told)]
+    shares = [done / total for done, total in (of_all_stages(*now) for now in told)]
     assert shares[0] == 0.0 and all(before <= after for before, after in pairwise(shares))
-    assert _of_all("report", 1, 1)[0] == _of_all("report", 1, 1)[1]
+    assert of_all_stages("report", 1, 1)[0] == of_all_stages("report", 1, 1)[1]

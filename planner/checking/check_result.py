@@ -93,6 +93,9 @@ class CheckResult:
         total = "passed" if self.passed else f"FAILED: {counted(len(self.faults), 'fault')}"
         return "\n".join([*map(str, self.findings), total])
 
+    def __str__(self) -> str:
+        return self.text()
+
     def as_dict(self) -> dict[str, Any]:
         """The same as values for JSON; lengths in mm, times in s, the rest in the unit that is named."""
         return {"passed": self.passed, "findings": [asdict(finding) for finding in self.findings]}

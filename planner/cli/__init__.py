@@ -47,10 +47,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception as error:
         if os.environ.get(TRACEBACK_VARIABLE):
             raise
-        print_note(
-            f"error: this is a defect of the planner, not of the input: {type(error).__name__}: {error} "
-            f"(set {TRACEBACK_VARIABLE}=1 to see where)"
+        from drawing_arm_planner.damage import damage
+
+        complaint = (
+            damage(error) or f"this is a defect of the planner, not of the input: {type(error).__name__}: {error}"
         )
+        print_note(f"error: {complaint} (set {TRACEBACK_VARIABLE}=1 to see where)")
         return EXIT_DEFECT
 
 

@@ -8,9 +8,9 @@ from typing import IO, cast
 from planner.cli.files import input_file, output_file
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
-from planner.cli.quantities import MIN_TOLERANCE_MM, length_mm
+from planner.cli.quantities import length_mm
 from planner.cli.terminal import print_summary
-from planner.settings import PlanSettings
+from planner.settings import MIN_TOLERANCE_MM, PlanSettings
 
 _DESCRIPTION = """\
 Examine a trajectory with mathematics of the check's own: limits at and between samples, couplings, the pen's height

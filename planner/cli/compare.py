@@ -111,20 +111,15 @@ def _start(arm: Arm, positions: Sequence[float]) -> FloatArray:
 
 
 def _print(comparison: Comparison, target: Path | None, picture: Path | None) -> None:
-    from planner.comparison.description import comparison_description
-    from planner.comparison.table import convergence_lines, table_lines
     from planner.files import written_aside
 
     if target is not None:
-        text = json.dumps(comparison_description(comparison), indent=2, allow_nan=False)
+        text = json.dumps(comparison.as_dict(), indent=2, allow_nan=False)
         with written_aside(target) as file:
             cast("IO[str]", file).write(text + "\n")
         if is_standard_output(target):
             return
-    lines = table_lines(comparison)
-    for found in comparison.convergences:
-        lines += ["", *convergence_lines(comparison.arm, found)]
-    print_summary(lines, *filter(None, [picture]))
+    print_summary([comparison.text()], *filter(None, [picture]))
 
 
 def _check(options: argparse.Namespace, settings: PlanSettings) -> None:

@@ -5,14 +5,12 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from planner import DISTRIBUTION, __version__
 from planner.cli.files import STANDARD_INPUT, input_file, output_file
 from planner.cli.interrupts import interrupts_remembered
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import (
-    MAX_RATE_HZ,
-    MIN_RATE_HZ,
-    MIN_TOLERANCE_MM,
     angle_deg,
     configuration_weights,
     length_mm,
@@ -23,7 +21,8 @@ from planner.cli.report import check_report, write_report_of
 from planner.cli.terminal import print_summary, print_warnings, progress
 from planner.cli.workers import add_workers_option
 from planner.files import STANDARD
-from planner.settings import CanvasKind, Method, PlanSettings
+from planner.progress import of_all_stages
+from planner.settings import MAX_RATE_HZ, MIN_RATE_HZ, MIN_TOLERANCE_MM, CanvasKind, Method, PlanSettings
 
 _DESCRIPTION = """\
 Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a trajectory of joint positions.
@@ -56,20 +55,7 @@ examples:
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
 
 exit codes: 0 done; 1 a check found fault; 2 unusable input or usage; 3 cannot be planned;
-4 hardware fault; 70 a defect of the planner; 130 interrupted"""
-
-
-_WORK = {
-    "reading": 5,
-    "placing": 3,
-    "joining": 2,
-    "ordering strokes": 10,
-    "drawing motions": 50,
-    "travels": 25,
-    "report": 5,
-}
-"""The stages of a plan in their order, and roughly what share of the time each takes."""
-_FINE = 100
+4 hardware fault; 70 a defect of the planner, or a damaged installation; 130 interrupted"""
 
 
 def plan(arguments: list[str]) -> int:
@@ -89,7 +75,7 @@ def plan(arguments: list[str]) -> int:
 
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
-            show(stage, *_of_all(stage, done, total))
+            show(stage, *of_all_stages(stage, done, total))
 
         planned = plan_drawing(drawing, settings, report, options.workers)
         raise_if_interrupted()
@@ -103,13 +89,6 @@ def plan(arguments: list[str]) -> int:
         wrote = [f"wrote {file}" for file in written if str(file) != STANDARD]
         print_summary([*planned.summary.lines(), *wrote], target)
     return 0
-
-
-def _of_all(stage: str, done: int, total: int) -> tuple[int, int]:
-    """How much of all stages is done, and how much there is: one bar, and one clock for the time left."""
-    names = list(_WORK)
-    before = sum(_WORK[name] for name in names[: names.index(stage)])
-    return round(_FINE * (before + _WORK[stage] * done / max(total, 1))), _FINE * sum(_WORK.values())
 
 
 def settings_of(options: argparse.Namespace) -> PlanSettings:
@@ -140,6 +119,9 @@ def _parser() -> Parser:
     )
     parser.add_argument(
         "drawing", type=input_file, metavar="DRAWING.svg", help="the drawing, gzipped or not; - for standard input"
+    )
+    parser.add_argument(
+        "--version", action="version", version=f"{DISTRIBUTION} {__version__}", help="print name and version"
     )
     parser.add_argument(
         "-o",

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 from planner.cli.files import input_file, output_file
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
-from planner.cli.quantities import MIN_TOLERANCE_MM, length_mm, number
+from planner.cli.quantities import length_mm, number
 from planner.cli.terminal import progress
-from planner.errors import PlanError, UsageError
-from planner.settings import PlanSettings
+from planner.errors import UsageError
+from planner.pictures import PlotKind, figure_of, film_to_file, motion_for_film, workspace_figure
+from planner.settings import MIN_TOLERANCE_MM, PlanSettings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from planner.arms.arm import Arm
-    from planner.arrays import FloatArray
     from planner.plots.look import Look
     from planner.trajectory import Trajectory
 
@@ -63,7 +63,7 @@ _GOES_WITH = {
     "speed_factor": ("film",),
     "fps": ("film",),
 }
-_KINDS = ("profiles", "drawing", "speed", "error", "phase", "timeline", "film", "workspace")
+_KINDS = (*(kind.value for kind in PlotKind), "film", "workspace")
 _FILM_SUFFIXES = (".html", ".gif", ".mp4")
 _FILM_DPI = 75
 
@@ -84,7 +84,7 @@ def plot(arguments: list[str]) -> int:
     look = Look.of(Theme(options.theme), Size(options.size), options.dpi or (_FILM_DPI if kind == "film" else None))
     _check_format(target, kind)
     if kind == _WITHOUT_TRAJECTORY:
-        figure = _workspace(load_arm(options.arm or DEFAULT_ARM), look)
+        figure = workspace_figure(load_arm(options.arm or DEFAULT_ARM), look)
     else:
         trajectory = read_trajectory(options.trajectory)
         arm = load_arm(options.arm or trajectory.arm)
@@ -198,102 +198,29 @@ def _check_format(target: Path, kind: str) -> None:
 
 
 def _figure(trajectory: Trajectory, arm: Arm, kind: str, options: argparse.Namespace, look: Look) -> Figure:
-    part = {"from_s": options.from_s, "to_s": options.to_s}
-    if kind == "profiles":
-        from planner.plots.profiles import plot_profiles
-
-        return plot_profiles(trajectory, arm, look, **part)
-    tip_mm = _tip_mm(trajectory, arm)
-    if kind == "phase":
-        from planner.plots.phase_plane import plot_phase_plane
-
-        return plot_phase_plane(trajectory, arm, tip_mm, options.stroke, look)
-    if kind == "timeline":
-        from planner.plots.timeline import plot_timeline
-
-        return plot_timeline(trajectory, tip_mm, arm.pen.clearance_mm, look, **part)
-    return _on_paper(trajectory, arm, tip_mm, kind, options, look)
-
-
-def _on_paper(
-    trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, kind: str, options: argparse.Namespace, look: Look
-) -> Figure:
     from planner.drawing.svg import read_drawing
 
-    drawing = read_drawing(options.drawing) if options.drawing else None
-    canvas, reach_mm = _paper_of(arm)
-    if kind == "speed":
-        from planner.plots.coloured_path import plot_speed
-
-        return plot_speed(trajectory, tip_mm, canvas, reach_mm, look)
-    if kind == "error" and drawing is not None:
-        from planner.checking.coverage import distance_from_drawing
-        from planner.plots.coloured_path import plot_error
-
-        return plot_error(
-            trajectory,
-            tip_mm,
-            distance_from_drawing(trajectory, drawing, tip_mm),
-            options.tolerance or PlanSettings().tolerance_mm,
-            canvas,
-            reach_mm,
-            look,
-        )
-    from planner.plots.drawing import plot_drawing
-
-    return plot_drawing(trajectory, tip_mm, drawing, canvas, reach_mm, look)
-
-
-def _paper_of(arm: Arm) -> tuple[FloatArray | None, tuple[float, float] | None]:
-    """Canvas corners and reach; None for an arm without: a trajectory from elsewhere can be shown all the same."""
-    from planner.redundancy.arm_model import ArmModel
-    from planner.workspace.reach import paper_in_reach
-
-    try:
-        paper = paper_in_reach(ArmModel(arm))
-    except PlanError:
-        return None, None
-    return paper.corners_arm_mm, paper.reach_mm
-
-
-def _tip_mm(trajectory: Trajectory, arm: Arm) -> FloatArray:
-    from planner.checking.chain import chain_poses
-
-    return chain_poses(arm, arm.from_file_units(trajectory.positions)).tip_mm.T
-
-
-def _workspace(arm: Arm, look: Look) -> Figure:
-    from planner.plots.workspace import plot_workspace
-    from planner.redundancy.arm_model import ArmModel
-    from planner.settings import CanvasKind
-    from planner.workspace.canvas import canvas_of
-    from planner.workspace.paper_map import paper_map
-    from planner.workspace.reach import paper_in_reach
-
-    model = ArmModel(arm)
-    reach_mm = paper_in_reach(model).reach_mm
-    canvases = {}
-    for kind in CanvasKind:
-        try:
-            canvases[kind] = canvas_of(model, kind, arm.pen.lift_mm).corners_arm_mm
-        except PlanError:  # a narrow ring has no documented canvas
-            continue
-    return plot_workspace(arm.name, paper_map(model), canvases, reach_mm, look)
+    return figure_of(
+        trajectory,
+        arm,
+        PlotKind(kind),
+        look,
+        drawing=read_drawing(options.drawing) if options.drawing else None,
+        tolerance_mm=options.tolerance or PlanSettings().tolerance_mm,
+        stroke=options.stroke,
+        from_s=options.from_s,
+        to_s=options.to_s,
+    )
 
 
 def _film(trajectory: Trajectory, arm: Arm, options: argparse.Namespace, look: Look) -> None:
-    from planner.plots.film_file import save_film
-    from planner.plots.motion import motion_of
-
-    canvas, reach_mm = _paper_of(arm)
-    motion = motion_of(
+    motion = motion_for_film(
         trajectory,
         arm,
-        _tip_mm(trajectory, arm),
         speed_factor=options.speed_factor,
         fps=options.fps,
         from_s=options.from_s,
         to_s=options.to_s,
     )
     with progress(quiet=options.quiet) as show:
-        save_film(motion, options.output, canvas, reach_mm, look, show)
+        film_to_file(motion, options.output, look, show)

@@ -15,10 +15,6 @@ MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4, "px": 25.4 / 96}
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([a-z]*)(/s)?\s*", re.ASCII)
 
-MIN_RATE_HZ, MAX_RATE_HZ = 50.0, 10_000.0
-"""Below 50 samples a second the straight lines that controllers draw between samples leave the paper's tolerance."""
-MIN_TOLERANCE_MM = 0.001
-
 
 def length_mm(*, zero: bool = False, minimum_mm: float = 0.0) -> Callable[[str], float]:
     """A reader of lengths such as `5`, `5mm` or `0.2in` that are positive (or `zero`) and at least the minimum."""

@@ -8,16 +8,12 @@ import os
 import stat
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from planner.errors import OutputError
 from planner.files import is_standard_output
-from planner.progress import Report
-
-if TYPE_CHECKING:
-    from rich.progress import TaskID
+from planner.progress import Report, bars
 
 
 def print_lines(lines: Iterable[str]) -> None:
@@ -73,35 +69,12 @@ def _print_aside(line: str) -> None:
 
 @contextmanager
 def progress(*, quiet: bool, single: bool = False) -> Iterator[Report]:
-    """Bars while standard error is a terminal, else nothing.
-
-    A bar for each label, with the time that it may take by the pace so far; or with `single` one bar whose label
-    changes, and which leaves it to the label to tell of time.
-    """
+    """Bars while standard error is a terminal, else nothing. single: as of `bars`."""
     if quiet or sys.stderr is None or not sys.stderr.isatty():
         yield lambda label, done, total: None
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, ProgressColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
-
-    columns: list[ProgressColumn] = [TextColumn("{task.description}", markup=False), BarColumn(), TaskProgressColumn()]
-    if not single:
-        columns += [TimeRemainingColumn(), TextColumn("left")]
-    bars = Progress(*columns, console=Console(stderr=True), transient=True)
-    tasks: dict[str, TaskID] = {}
-
-    def show(label: str, done: int, total: int) -> None:
-        key = "" if single else label
-        if key not in tasks:
-            tasks[key] = bars.add_task(label, total=total)
-        bars.update(tasks[key], description=label, completed=done, total=total)
-
-    bars.start()
-    try:
+    with bars(single=single) as show:
         yield show
-    finally:
-        with suppress(OSError):  # the terminal may be gone
-            bars.stop()
 
 
 def _is_gone(stream: io.TextIOBase | object, error: OSError) -> bool:

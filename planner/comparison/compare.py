@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -54,6 +55,24 @@ class Comparison:
     start: FloatArray
     results: tuple[MethodResult, ...]
     convergences: tuple[Convergence, ...]
+
+    def text(self) -> str:
+        """The table, and the documented method's iterations for single targets, without a line end at the end."""
+        from planner.comparison.table import convergence_lines, table_lines
+
+        lines = table_lines(self)
+        for found in self.convergences:
+            lines += ["", *convergence_lines(self.arm, found)]
+        return "\n".join(lines)
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def as_dict(self) -> dict[str, Any]:
+        """The same and more as values for JSON, as `plan compare --json` writes them."""
+        from planner.comparison.description import comparison_description
+
+        return comparison_description(self)
 
 
 def default_start(model: ArmModel, kind: TargetKind) -> FloatArray:

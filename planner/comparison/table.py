@@ -24,7 +24,7 @@ _HEAD, _TAIL = 20, 5
 _ROUNDING = 1e-6
 """What is less than this is the rounding of the computer's numbers."""
 
-Show = Callable[[float], str]
+Report = Callable[[float], str]
 
 
 def _share(value: float) -> str:
@@ -44,7 +44,7 @@ def _three_digits(value: float) -> str:
     return f"{value:.{min(max(2 - int(np.floor(np.log10(value))), 0), 7)}f}"
 
 
-_ROWS: tuple[tuple[str, str, Show], ...] = (
+_ROWS: tuple[tuple[str, str, Report], ...] = (
     ("solved_share", "solved (%)", _share),
     ("usable_share", "solved within the joint limits (%)", _share),
     ("iterations", "iterations, mean", _three_digits),
@@ -163,7 +163,7 @@ def _tolerances() -> str:
     return f"{DOCUMENTED.tolerance_xy_mm:g} mm along the paper and {DOCUMENTED.tolerance_z_mm:g} mm across it"
 
 
-def _cell(result: MethodResult, key: str, show: Show) -> str:
+def _cell(result: MethodResult, key: str, show: Report) -> str:
     value = getattr(result.figures, key)
     return _NOTHING if value is None else show(value)
 

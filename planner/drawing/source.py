@@ -49,19 +49,21 @@ class Survey:
     root: dict[str, str]
 
 
-def read_source(path: Path) -> bytes:
-    """The XML bytes of an .svg or gzipped .svgz file; DrawingError if there are none or too many."""
-    source = path.name or str(path)
-    try:
-        if path.is_dir():
-            raise DrawingError(source, "is a folder, not an SVG file")
-        with path.open("rb") as file:
-            data = file.read(SIZE_LIMIT_BYTES + 1)
-    except FileNotFoundError:
-        raise DrawingError(str(path), "no such file") from None
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise DrawingError(str(path), f"cannot be read: {reason}") from None
+@dataclass(frozen=True, slots=True)
+class SvgInMemory:
+    """An SVG, gzipped or not, that is no file on disk. name: what messages and trajectories call it."""
+
+    name: str
+    content: bytes
+
+
+DrawingSource = Path | SvgInMemory
+
+
+def read_source(drawing: DrawingSource) -> bytes:
+    """The XML bytes of an SVG, gzipped or not; DrawingError if there are none or too many."""
+    source = drawing.name or str(drawing)
+    data = drawing.content if isinstance(drawing, SvgInMemory) else _read_file(drawing)
     if data.startswith(b"\x1f\x8b") and len(data) <= SIZE_LIMIT_BYTES:
         data = _unzipped(data, source)
     if len(data) > SIZE_LIMIT_BYTES:
@@ -72,6 +74,19 @@ def read_source(path: Path) -> bytes:
     if other:
         raise DrawingError(source, f"this is {other}, not an SVG: trace or convert it to one first")
     return data
+
+
+def _read_file(path: Path) -> bytes:
+    try:
+        if path.is_dir():
+            raise DrawingError(path.name or str(path), "is a folder, not an SVG file")
+        with path.open("rb") as file:
+            return file.read(SIZE_LIMIT_BYTES + 1)
+    except FileNotFoundError:
+        raise DrawingError(str(path), "no such file") from None
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise DrawingError(str(path), f"cannot be read: {reason}") from None
 
 
 def _unzipped(data: bytes, source: str) -> bytes:

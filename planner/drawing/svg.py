@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.normalised import LARGEST_COORDINATE, read_normalised
 from planner.drawing.rewrite import rewrite
-from planner.drawing.source import Survey, read_source, survey
+from planner.drawing.source import DrawingSource, Survey, read_source, survey
 from planner.drawing.usvg import NormalisationFailed, normalise
 from planner.errors import DrawingError
 
@@ -29,15 +28,15 @@ _ADVICE = {
 _SMALLEST_PAGE, _LARGEST_PAGE = 1e-6, LARGEST_COORDINATE
 
 
-def read_drawing(path: Path, report: Callable[[int, int], None] = lambda done, total: None) -> Drawing:
-    """All visible outlines of the SVG file `path`, gzipped or not, with the page they are on.
+def read_drawing(svg: DrawingSource, report: Callable[[int, int], None] = lambda done, total: None) -> Drawing:
+    """All visible outlines of an SVG, a file or in memory, gzipped or not, with the page they are on.
 
     Only that one file is ever read. `report` is told how much of the work is done, and how much there is. Raises
     DrawingError for a file that is missing, not an SVG, unsafe or beyond the
     limits of size, and for a drawing in which there is nothing to draw.
     """
-    source = path.name
-    data = read_source(path)
+    source = svg.name
+    data = read_source(svg)
     found = survey(data, source)
     report(1, _STEPS)
     rewritten, unusable = rewrite(data, found, source)

@@ -1,0 +1,32 @@
+"""The console scripts: the command, once it is known that the packages found are those of this distribution."""
+
+from __future__ import annotations
+
+import sys
+
+from drawing_arm_planner.foreign import NAME, foreign
+
+EXIT_DAMAGED = 70
+"""As for any fault of the program itself: EX_SOFTWARE."""
+
+
+def main() -> int:
+    """Run the command `plan`; the exit code. A damaged installation ends as one line on standard error."""
+    complaint = foreign()
+    if complaint is None:
+        try:
+            import planner
+            from planner.cli import main as command
+
+            if planner.DISTRIBUTION != NAME:
+                raise ImportError("the package planner is another's")
+        except Exception as error:  # whatever the code of strangers raises
+            from drawing_arm_planner.damage import damage
+
+            complaint = damage(error)
+            if complaint is None:
+                raise
+        else:
+            return command()
+    print(f"plan: error: {complaint}", file=sys.stderr)
+    return EXIT_DAMAGED

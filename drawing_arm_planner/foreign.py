@@ -1,0 +1,22 @@
+"""Whose packages Python finds under the names `planner` and `hardware`: ours, or those of strangers."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+NAME = "drawing-arm-planner"
+PACKAGES = ("planner", "hardware")
+HOME = Path(__file__).resolve().parent.parent
+"""The folder that all our packages are in."""
+ADVICE = f"install it in a virtual environment of its own: python -m venv drawing, then drawing/bin/pip install {NAME}"
+
+
+def foreign() -> str | None:
+    """What to tell where Python finds another `planner` or `hardware` before ours; None where it does not."""
+    for name in PACKAGES:
+        spec = importlib.util.find_spec(name)
+        places = [] if spec is None else [*(spec.submodule_search_locations or ()), *filter(None, [spec.origin])]
+        if places and not any(HOME in Path(place).resolve().parents for place in places):
+            return f"Python finds another package '{name}' in place of that of {NAME}, at {places[0]}; {ADVICE}"
+    return None

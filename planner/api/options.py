@@ -1,0 +1,52 @@
+"""The settings of a plan as keywords."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from typing import TypedDict
+
+from planner.errors import UnknownOption, UsageError
+from planner.settings import ConfigurationWeights, PlanSettings
+
+
+class PlanOptions(TypedDict, total=False):
+    """Keywords of `plan` and `compare`: those of `PlanSettings` but the arm. Choices may be given by their names, and
+    weights as a mapping."""
+
+    method: str
+    rate_hz: float
+    tolerance_mm: float
+    speed_mm_s: float | None
+    lowering_speed_mm_s: float
+    dwell_s: float
+    lift_mm: float | None
+    canvas: str
+    fit: bool
+    margin_mm: float
+    rotate_deg: float
+    skip_unreachable: bool
+    weights: ConfigurationWeights | Mapping[str, float] | None
+
+
+def settings_with(settings: PlanSettings | None, arm: str | None, options: PlanOptions) -> PlanSettings:
+    """The settings, or the usual ones, with an arm and options in place of what they say.
+
+    Errors: UnknownOption, UsageError.
+    """
+    if settings is not None and not isinstance(settings, PlanSettings):
+        raise UsageError(f"settings is a PlanSettings, not a value of type {type(settings).__name__}")
+    require_known(options, [field.name for field in fields(PlanSettings)])
+    changes: dict[str, object] = dict(options) if arm is None else {**options, "arm": arm}
+    weights = changes.get("weights")
+    if isinstance(weights, Mapping):
+        require_known(weights, [field.name for field in fields(ConfigurationWeights)])
+        changes["weights"] = ConfigurationWeights(**weights)
+    return replace(settings or PlanSettings(), **changes)  # type: ignore[arg-type]  # they check themselves
+
+
+def require_known(given: Mapping[str, object], known: list[str]) -> None:
+    """Errors: UnknownOption for the first name that is not known."""
+    for name in given:
+        if name not in known:
+            raise UnknownOption(str(name), known)
