@@ -39,7 +39,7 @@ MEASURES: dict[str, Measure] = {
     "limits": lambda _, drawing, settings: configurations.limits_of_narrow_arms(drawing, settings),
     "phases": lambda folder, _, settings: whole.phases_and_order(folder, settings),
     "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),
-    "postures": lambda _, drawing, settings: speed.configurations(drawing, settings),
+    "configurations": lambda _, drawing, settings: speed.configurations(drawing, settings),
     "end-to-end": lambda _, drawing, settings: speed.end_to_end(drawing, settings),
     "million-points": lambda _, drawing, settings: scale.many_strokes(drawing, settings),
     "long-stroke": lambda _, __, settings: scale.one_stroke(settings),

@@ -58,11 +58,9 @@ def test_an_arm_that_folds_without_thickness_does_not_with_it(
     assert main([str(drawing), "-o", output, "--margin", "0", "--quiet"]) == 0
     assert main(["check", output]) == 0
     assert "links apart" not in capsys.readouterr().out
-    assert main(["check", output, "--arm", arm, "--json", str(tmp_path / "check result.json")]) == 1
+    assert main(["check", output, "--arm", arm, "--json", str(tmp_path / "result.json")]) == 1
     (fault,) = [
-        finding
-        for finding in json.loads((tmp_path / "check result.json").read_text())["findings"]
-        if not finding["passed"]
+        finding for finding in json.loads((tmp_path / "result.json").read_text())["findings"] if not finding["passed"]
     ]
     assert fault["check"] == "links apart" and fault["worst"] < -5 and fault["place"]["stroke"] == 2
     assert main([str(drawing), "-o", output, "--arm", arm, "--margin", "0", "--quiet"]) == 0
@@ -86,11 +84,11 @@ def test_a_method_that_runs_into_itself_is_refused_or_left_out(
     assert set(read_trajectory(output).stroke.tolist()) == {TRAVELLING, 0, 1}
 
 
-def test_hops_between_configurations_that_collide_are_told() -> None:
-    """At its inner edge the field of the thin arm folds."""
-    arm, field = thick(load_once("drawing_arm")), configuration_map_of(load_once("drawing_arm"))
-    tips = np.array([[field.radii_mm[0] + 0.1, 0.0], [100.0, 0.0]])
-    configurations, _ = field.configurations_at(np.column_stack((tips, np.zeros(2))))
+def test_travel_moves_between_configurations_that_collide_are_told() -> None:
+    """At its inner edge the map of the thin arm folds."""
+    arm, thin_map = thick(load_once("drawing_arm")), configuration_map_of(load_once("drawing_arm"))
+    tips = np.array([[thin_map.radii_mm[0] + 0.1, 0.0], [100.0, 0.0]])
+    configurations, _ = thin_map.configurations_at(np.column_stack((tips, np.zeros(2))))
     near, far = (Contact(tip, configuration) for tip, configuration in zip(tips, configurations, strict=True))
     rules = TravelRules(1.0, 5.0, 30.0, 100.0, 0.05)
     chunk = TravelChunk(PlanContext.of(arm, PlanSettings()), rules, [None, far, near], [far, near, None])
@@ -100,7 +98,9 @@ def test_hops_between_configurations_that_collide_are_told() -> None:
     assert comes.clearance_mm == pytest.approx(goes.clearance_mm) and goes.clearance_mm < -5
 
 
-def test_strokes_that_no_hop_gets_to_are_refused_or_left_out(drawing: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_strokes_that_no_travel_move_gets_to_are_refused_or_left_out(
+    drawing: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Whatever comes to the stroke near the base collides."""
 
     def colliding(chunk: TravelChunk) -> list[TravelMove]:

@@ -19,7 +19,7 @@ from planner.redundancy.configuration_map import branch_references, configuratio
 from planner.settings import ConfigurationWeights, Method
 
 Solve = Callable[[Targets, FloatArray], Solutions]
-"""Targets, and the joints (n_joints,) that each course of them starts from."""
+"""Targets, and the joints (n_joints,) that each sequence of them starts from."""
 
 _ROUNDING_MM = 1e-6
 
@@ -27,21 +27,21 @@ _ROUNDING_MM = 1e-6
 @dataclass(frozen=True, slots=True)
 class ComparedMethod:
     """build: the solver for an arm; it raises PlannerError where the arm has none. tolerance_mm: how far from its
-    target a solved tip may be. infeasible path: why a target is not solved. drawn_by: the method that `plan` draws
+    target a solved tip may be. unsolved: why a target is not solved. drawn_by: the method that `plan` draws
     with."""
 
     name: str
     title: str
     build: Callable[[Arm, ConfigurationWeights], Solve]
     tolerance_mm: float
-    infeasible_path: str
+    unsolved: str
     iterates: bool
     drawn_by: Method | None
 
 
 def _by_dls(settings: dls.DlsSettings) -> Callable[[Arm, ConfigurationWeights], Solve]:
     def build(arm: Arm, weights: ConfigurationWeights) -> Solve:
-        return lambda targets, start: _course_by_course(
+        return lambda targets, start: _one_by_one(
             targets, lambda tips_mm: dls.solve_sequence(arm, tips_mm, start, settings)
         )
 
@@ -51,7 +51,7 @@ def _by_dls(settings: dls.DlsSettings) -> Callable[[Arm, ConfigurationWeights], 
 def _by_nlp(arm: Arm, weights: ConfigurationWeights) -> Solve:
     nlp.nlp_solver(arm)
     independent_of = kinematics_of(arm).independent_of
-    return lambda targets, start: _course_by_course(
+    return lambda targets, start: _one_by_one(
         targets,
         lambda tips_mm: nlp.solve_sequence(
             arm, tips_mm, independent_of(start), settle=targets.kind is TargetKind.DRAWING
@@ -83,8 +83,8 @@ def _by_path(arm: Arm, weights: ConfigurationWeights) -> Solve:
     return solve
 
 
-def _course_by_course(targets: Targets, solve_course: Callable[[FloatArray], Solutions]) -> Solutions:
-    found = [solve_course(course) for course in np.split(targets.tips_mm, targets.firsts[1:])]
+def _one_by_one(targets: Targets, solve_sequence: Callable[[FloatArray], Solutions]) -> Solutions:
+    found = [solve_sequence(tips_mm) for tips_mm in np.split(targets.tips_mm, targets.firsts[1:])]
     return Solutions(
         *(
             np.concatenate([getattr(each, name) for each in found])

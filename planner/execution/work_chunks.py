@@ -124,7 +124,7 @@ class StrokeChunk:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TravelChunk:
-    """Neighbouring travel moves: where each leaves and meets the paper, None at the ends of the drawing."""
+    """Neighbouring travel moves: where each starts and ends on the paper, None at the ends of the drawing."""
 
     context: PlanContext
     rules: TravelRules
@@ -134,7 +134,7 @@ class TravelChunk:
 
 def pieces_of(context: PlanContext, strokes: Sequence[FloatArray]) -> list[list[Piece]]:
     """What may be timed apart, stroke by stroke. Methods that go from configuration to configuration need strokes
-    whole, and so does an arm that has to choose a branches for each."""
+    whole, and so does an arm that has to choose a branch for each."""
     settings = context.settings
     whole = settings.method in (Method.DLS, Method.NLP) or (
         settings.method is Method.PATH and len(configuration_branches(context.arm, settings.weights)) > 1
@@ -255,8 +255,8 @@ def pen_speed_limit(arm: Arm, paths: PenPaths, splines: JointPaths, settings: Pl
     near its path between samples."""
     speed_mm_s = pen_speed_mm_s(arm, settings)
     chords = rate_limit(paths, FRACTIONS, speed_mm_s, SAMPLE_SHARE * settings.tolerance_mm, settings.rate_hz)
-    bulges = chord_error_limit(kinematics_of(arm), splines, CHORD_SHARE * settings.tolerance_mm, settings.rate_hz)
-    return np.minimum(chords, bulges[:, None])
+    joint_chords = chord_error_limit(kinematics_of(arm), splines, CHORD_SHARE * settings.tolerance_mm, settings.rate_hz)
+    return np.minimum(chords, joint_chords[:, None])
 
 
 def _timed_taps(arm: Arm, tips_mm: FloatArray, settings: PlanSettings) -> list[TimedStroke | InfeasiblePath]:

@@ -1,5 +1,5 @@
 """Arms that the planner did not grow up with: of half a metre and a metre, with six and seven joints, and those that
-come along at other sizes. All of them have a field, and draw what the check accepts."""
+come along at other sizes. All of them have a configuration map, and draw what the check accepts."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def drawing(tmp_path: Path) -> Path:
     return file
 
 
-def require_exact_field(arm: Arm) -> None:
+def require_exact_map(arm: Arm) -> None:
     for sheet in configuration_branches(arm):
         tips = on_ray(np.linspace(sheet.radii_mm[0], sheet.radii_mm[-1], 200))
         independent, good = sheet.configurations_at(tips)
@@ -49,15 +49,15 @@ def require_exact_field(arm: Arm) -> None:
 
 
 @pytest.mark.parametrize("name", KNOWN_ARMS)
-def test_known_arms_have_an_exact_field_without_jumps(name: str) -> None:
-    require_exact_field(KNOWN_ARMS[name])
+def test_known_arms_have_an_exact_map_without_jumps(name: str) -> None:
+    require_exact_map(KNOWN_ARMS[name])
 
 
 @settings(max_examples=5)
 @given(st.sampled_from(known_arms()), st.floats(np.log(0.8), np.log(4.0)))
 def test_arms_of_any_size_have_one(name: str, log_factor: float) -> None:
     arm = scaled(load_once(name), float(np.exp(log_factor)))
-    require_exact_field(arm)
+    require_exact_map(arm)
     for kind in (CanvasKind.USABLE, CanvasKind.OPTIMAL):
         assert np.isfinite(canvas_of(arm, kind, arm.pen.lift_mm).corners_arm_mm).all()
 
@@ -73,9 +73,9 @@ def test_they_draw_what_the_check_accepts(name: str, drawing: Path, tmp_path: Pa
 def test_a_long_way_from_the_reference_a_pen_still_points_at_its_target() -> None:
     """Millimetres of a metre and radians of pointing stand side by side in one equation."""
     arm = KNOWN_ARMS["ur5e"]
-    field, kinematics = configuration_map_of(arm), kinematics_of(arm)
-    radii = np.linspace(field.radii_mm[0] + 20, field.radii_mm[-1] - 20, 30)
-    references = np.repeat(field.home[None], len(radii), axis=0)
+    configuration_map, kinematics = configuration_map_of(arm), kinematics_of(arm)
+    radii = np.linspace(configuration_map.radii_mm[0] + 20, configuration_map.radii_mm[-1] - 20, 30)
+    references = np.repeat(configuration_map.home[None], len(radii), axis=0)
     found, exact = project(kinematics, references, on_ray(radii))
     assert exact.sum() > len(radii) // 2
     task, _ = kinematics.task_and_jacobian(found[exact])
@@ -85,9 +85,11 @@ def test_a_long_way_from_the_reference_a_pen_still_points_at_its_target() -> Non
 def test_a_course_keeps_the_way_to_its_edges() -> None:
     """Where few configurations are sampled, the walk to the edge is long, and what lies between has to be near it."""
     arm = KNOWN_ARMS["ur5e"]
-    field, kinematics = configuration_map_of(arm), kinematics_of(arm)
-    middle = len(field.radii_mm) // 2
-    radii, configurations = stretched_to_edges(kinematics, field.radii_mm[middle : middle + 1], field.home[None])
+    configuration_map, kinematics = configuration_map_of(arm), kinematics_of(arm)
+    middle = len(configuration_map.radii_mm) // 2
+    radii, configurations = stretched_to_edges(
+        kinematics, configuration_map.radii_mm[middle : middle + 1], configuration_map.home[None]
+    )
     assert radii[-1] - radii[0] > 100 * COARSE_STEP_MM
     assert np.diff(radii).max() <= COARSE_STEP_MM
     np.testing.assert_allclose(tips_by_product(arm, arm.complete(configurations)), on_ray(radii), atol=1e-6)

@@ -76,7 +76,7 @@ def test_the_configuration_path_is_smooth_along_the_radius(arm: Arm) -> None:
     assert np.abs(np.diff(bend, axis=0)).max() < 0.5 * np.abs(bend).max()  # no kink between two samples
 
 
-def test_the_field_ends_where_configurations_stop_being_usable(arm: Arm) -> None:
+def test_the_map_ends_where_configurations_stop_being_usable(arm: Arm) -> None:
     configuration_map, kinematics = configuration_map_of(arm), kinematics_of(arm)
     room = 0.02 * (arm.maximum - arm.minimum)
 
@@ -123,7 +123,7 @@ def test_the_same_arm_has_the_same_configuration_map() -> None:
     np.testing.assert_array_equal(one.configurations, other.configurations)
 
 
-def test_an_arm_that_cannot_have_a_field_is_told_why() -> None:
+def test_an_arm_that_cannot_have_a_map_is_told_why() -> None:
     arm = load_once("drawing_arm")
     sliding = replace(arm, joints=(replace(arm.joints[0], kind=JointKind.PRISMATIC), *arm.joints[1:]))
     with pytest.raises(PlanError, match="turns about the vertical"):

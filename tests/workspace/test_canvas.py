@@ -145,7 +145,7 @@ def test_the_usable_canvas_cannot_grow_by_a_millimetre(arm: Arm, lift_mm: float,
     assert not drawable(arm, points, lift_mm).all()
 
 
-def test_without_joint_limits_in_the_way_the_usable_canvas_is_the_largest_of_the_fields_ring() -> None:
+def test_without_joint_limits_in_the_way_the_usable_canvas_is_the_largest_of_the_ring_of_the_map() -> None:
     arm = load_once("drawing_arm")
     radii = configuration_map_of(arm).radii_mm
     largest = area_mm2(optimal_canvas(float(radii[-1]), float(radii[0])))
