@@ -138,8 +138,8 @@ def levelled(arm: Arm) -> Arm:
 
 
 def configuration_map_of(arm: Arm, weights: ConfigurationWeights | None = None) -> ConfigurationMap:
-    """The configuration map of an arm, computed once. Errors: PlanError where the arm cannot have one, ArmFileError where its file
-    contradicts itself."""
+    """The configuration map of an arm, computed once. Errors: PlanError where the arm cannot have one, ArmFileError
+    where its file contradicts itself."""
     return configuration_branches(arm, weights)[0]
 
 
