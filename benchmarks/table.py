@@ -39,11 +39,13 @@ MEASURES: dict[str, Measure] = {
     "limits": lambda _, drawing, settings: configurations.limits_of_narrow_arms(drawing, settings),
     "phases": lambda folder, _, settings: whole.phases_and_order(folder, settings),
     "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),
-    "postures": lambda _, drawing, settings: speed.configurations(drawing, settings),
+    "configurations": lambda _, drawing, settings: speed.configurations(drawing, settings),
     "end-to-end": lambda _, drawing, settings: speed.end_to_end(drawing, settings),
     "million-points": lambda _, drawing, settings: scale.many_strokes(drawing, settings),
     "long-stroke": lambda _, __, settings: scale.one_stroke(settings),
 }
+MARK = "<!-- from here on by benchmarks/table.py -->"
+"""What stands above it on a page is kept."""
 LIBRARIES = ("numpy", "scipy", "casadi", "ruckig", "toppra", "copp-py")
 
 
@@ -99,8 +101,6 @@ def main() -> None:
         )
     text = "\n".join(
         [
-            "# Benchmarks",
-            "",
             f"{datetime.now(UTC):%Y-%m-%d}. {machine()}.",
             "",
             f"Arm {settings.arm}, {len(found)} drawings, tolerance {settings.tolerance_mm:g} mm, pen at most"
@@ -113,7 +113,12 @@ def main() -> None:
     if options.output is None:
         print(text)
     else:
-        options.output.write_text(text)
+        options.output.write_text(f"{_kept(options.output)}{MARK}\n\n{text}", encoding="utf-8")
+
+
+def _kept(page: Path) -> str:
+    """What a page that is there already says before its table."""
+    return page.read_text(encoding="utf-8").partition(MARK)[0] if page.exists() else "# Benchmarks\n\n"
 
 
 if __name__ == "__main__":

@@ -345,10 +345,10 @@ def _travel_moves(
     rules = TravelRules(
         arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz, settings.tolerance_mm
     )
-    leave = [None, *(stroke.last for stroke in timed)]
-    meet = [*(stroke.first for stroke in timed), None]
+    starts = [None, *(stroke.last for stroke in timed)]
+    ends = [*(stroke.first for stroke in timed), None]
     moves: list[TravelMove] = []
-    for made in executor(planned_travel_moves, travel_chunks(context, rules, leave, meet)):
+    for made in executor(planned_travel_moves, travel_chunks(context, rules, starts, ends)):
         for index, move in enumerate(made, len(moves)):
             if not move.exact:
                 raise PlanError(
@@ -356,7 +356,7 @@ def _travel_moves(
                     f" of arm {arm.name}; try another --method, a smaller --lift or a larger --margin"
                 )
         moves += made
-        report("travels", len(moves), len(leave))
+        report("travels", len(moves), len(starts))
     return moves
 
 

@@ -289,7 +289,7 @@ def test_the_summary_says_what_the_trajectory_is(tmp_path: Path) -> None:
     assert summary.warnings == []
 
 
-def test_doubled_points_and_tiny_strokes_are_no_infeasible_path(tmp_path: Path) -> None:
+def test_doubled_points_and_tiny_strokes_can_be_drawn(tmp_path: Path) -> None:
     shapes = [
         polyline((0, 0), (0, 0), (40, 0), (40, 0), (40, 1e-9), (0, 0)),
         polyline((10, 10), (10.0001, 10)),

@@ -59,11 +59,9 @@ def test_an_arm_that_folds_without_thickness_does_not_with_it(
     assert main([str(drawing), "-o", output, "--margin", "0", "--quiet"]) == 0
     assert main(["check", output]) == 0
     assert "links apart" not in capsys.readouterr().out
-    assert main(["check", output, "--arm", arm, "--json", str(tmp_path / "check result.json")]) == 1
+    assert main(["check", output, "--arm", arm, "--json", str(tmp_path / "result.json")]) == 1
     (fault,) = [
-        finding
-        for finding in json.loads((tmp_path / "check result.json").read_text())["findings"]
-        if not finding["passed"]
+        finding for finding in json.loads((tmp_path / "result.json").read_text())["findings"] if not finding["passed"]
     ]
     assert fault["check"] == "links apart" and fault["worst"] < -5 and fault["place"]["stroke"] == 2
     assert main([str(drawing), "-o", output, "--arm", arm, "--margin", "0", "--quiet"]) == 0
@@ -101,7 +99,9 @@ def test_hops_between_configurations_that_collide_are_told() -> None:
     assert comes.clearance_mm == pytest.approx(goes.clearance_mm) and goes.clearance_mm < -5
 
 
-def test_strokes_that_no_hop_gets_to_are_refused_or_left_out(drawing: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_strokes_that_no_travel_move_gets_to_are_refused_or_left_out(
+    drawing: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Whatever comes to the stroke near the base collides."""
 
     def colliding(chunk: TravelChunk) -> list[TravelMove]:

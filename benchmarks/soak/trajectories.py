@@ -91,14 +91,14 @@ def attempt(folder: Path, seed: int, item: int, desk: Path) -> tuple[str, str]:
         extra = {"error": ("--drawing", drawing), "film": ("--fps", "1")}.get(kind, ())
         target = "film.gif" if kind == "film" else "picture.png"
         commands.append((("plot", "traj.csv", "-o", target, "--kind", kind, *extra), {0: "", 2: "", 3: ""}))
-    check_result = ""
+    outcome = ""
     for arguments, allowed in commands:
         code, said = command(*arguments)
         kind = judged(" ".join(arguments), code, said, allowed)
         if not kind.startswith("fine"):
             return kind, said
-        check_result = check_result or kind
-    return check_result, ""
+        outcome = outcome or kind
+    return outcome, ""
 
 
 def write(folder: Path, seed: int, item: int, keep: Path) -> None:

@@ -141,8 +141,8 @@ def figures(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> 
 def reversals(joints: FloatArray) -> int:
     """How often joints (n, n_joints), degrees or mm, turn back by more than the hysteresis, all joints together."""
     total = 0
-    for course in joints.T:
-        values = course.tolist()
+    for column in joints.T:
+        values = column.tolist()
         low = high = values[0]
         direction = 0
         for value in values:

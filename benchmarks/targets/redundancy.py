@@ -46,8 +46,8 @@ class Design:
 
 
 def against_brute_force(drawing: Path, settings: PlanSettings) -> list[Row]:
-    """The field's course against a dense search over all configurations of the ray; and, the price of the same
-    configuration at the same place, the map along short strokes against a dense search for each of them."""
+    """The map's configuration path against a dense search over all configurations of the ray; and, the price of the
+    same configuration at the same place, the map along short strokes against a dense search for each of them."""
     arm = load_arm(settings.arm)
     model = ArmModel(arm)
     cost, radii, samples = choice_of_configurations(model.kinematics, settings.weights)
@@ -61,7 +61,7 @@ def against_brute_force(drawing: Path, settings: PlanSettings) -> list[Row]:
     )
     rows = [
         Row(
-            "redundancy optimum, the map's course against a dense search over all configurations of the ray",
+            "redundancy optimum, the configuration map against a dense search over all configurations of the ray",
             "within 0.5 %",
             f"cost {ours:.3f} against {brute:.3f}: {ours / brute - 1:+.2%}"
             f" ({rounded / brute - 1:+.2%} once its corners are rounded)",
@@ -70,18 +70,18 @@ def against_brute_force(drawing: Path, settings: PlanSettings) -> list[Row]:
     ]
     strokes = sorted(lines(placed_strokes(drawing, arm, settings), _LONGER_THAN_MM), key=length_mm)[:_STROKES]
     designs = per_stroke_designs(cost, configuration_map, pool, strokes)
-    base = designs["field"]
+    base = designs["map"]
     told = "; ".join(
         f"{name}: cost {one.cost / base.cost - 1:+.1%}, sensitivity"
         f" {one.sideways_mm_rad / base.sideways_mm_rad - 1:+.1%}, reversals {one.reversals}"
         for name, one in designs.items()
-        if name != "field"
+        if name != "map"
     )
     rows.append(
         Row(
             f"configurations chosen for each of {len(strokes)} short strokes by itself, against the map",
             "report: the price of the same configuration at the same place",
-            f"field: cost {base.cost:.3f}, reversals {base.reversals}; {told}",
+            f"map: cost {base.cost:.3f}, reversals {base.reversals}; {told}",
         )
     )
     return rows
@@ -91,11 +91,11 @@ def per_stroke_designs(
     cost: ConfigurationCost, configuration_map: ConfigurationMap, pool: FloatArray, strokes: list[FloatArray]
 ) -> dict[str, Design]:
     """The same strokes by the map, by a dense search for each, and by the map polished for each."""
-    configuration_paths: dict[str, list[tuple[FloatArray, FloatArray]]] = {"field": [], "per stroke": [], "both": []}
+    configuration_paths: dict[str, list[tuple[FloatArray, FloatArray]]] = {"map": [], "per stroke": [], "both": []}
     for stroke in strokes:
         along, tips = stations(stroke)
         start, _ = project(cost.kinematics, configuration_map.reference(tips), tips)
-        configuration_paths["field"].append((along, start))
+        configuration_paths["map"].append((along, start))
         configuration_paths["per stroke"].append((along, best_of_dense(cost, along, tips, pool)))
         configuration_paths["both"].append((along, polished_configuration_path(cost, along, tips, start)))
     return {name: _design(cost, each) for name, each in configuration_paths.items()}
@@ -110,13 +110,13 @@ def stations(stroke: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def best_of_dense(cost: ConfigurationCost, along_mm: FloatArray, tips_mm: FloatArray, pool: FloatArray) -> FloatArray:
-    """(n, n_independent) the cheapest course through all usable configurations in which a joint is at a whole degree
+    """(n, n_independent) the cheapest path through all usable configurations in which a joint is at a whole degree
     (or mm), found from several references at each tip; polished like ours, so that the grid costs nothing."""
     reached, configuration_path = cheapest_configuration_path(
         cost, along_mm, [_all_configurations(cost, tip, pool) for tip in tips_mm]
     )
     if len(reached) < len(along_mm):
-        raise PlanError("the dense search found no course over the whole way")
+        raise PlanError("the dense search found no path over the whole way")
     return polished_configuration_path(cost, along_mm, tips_mm, configuration_path)
 
 

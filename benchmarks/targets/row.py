@@ -17,8 +17,8 @@ class Row:
     met: bool | None = None
 
     def markdown(self) -> str:
-        check_result = {True: "met", False: "**not met**", None: "–"}[self.met]
-        return f"| {self.what} | {self.target} | {self.measured} | {check_result} |"
+        word = {True: "met", False: "**not met**", None: "–"}[self.met]
+        return f"| {self.what} | {self.target} | {self.measured} | {word} |"
 
 
 def missing(package: str, what: str, target: str) -> Row | None:

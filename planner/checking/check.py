@@ -1,4 +1,4 @@
-"""The independent check result on a trajectory: nothing of the planner's own mathematics takes part in it."""
+"""The independent check of a trajectory: nothing of the planner's own mathematics takes part in it."""
 
 from __future__ import annotations
 

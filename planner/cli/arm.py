@@ -65,12 +65,12 @@ def arm(arguments: list[str]) -> int:
         return _configuration(described, options.at, options.frame or "base", as_json=options.json)
     if options.frame is not None:
         raise UsageError("--frame goes with --at")
-    paper, infeasible_path = _paper(described)
+    paper, refusal = _paper(described)
     description = arm_description(described) | paper
     if options.json:
         print_lines([json.dumps(description, indent=2)])
     else:
-        print_lines([f"{described.name}: {described.source}", "", *_table(description, infeasible_path)])
+        print_lines([f"{described.name}: {described.source}", "", *_table(description, refusal)])
     return 0
 
 
@@ -109,7 +109,7 @@ def _paper(arm: Arm) -> tuple[dict[str, Any], str]:
     }, ""
 
 
-def _table(arm: dict[str, Any], infeasible_path: str) -> list[str]:
+def _table(arm: dict[str, Any], refusal: str) -> list[str]:
     rows = [("joint", "kind", "theta", "d", "a", "alpha", "min", "max", "velocity", "acceleration", "jerk", "unit")]
     for joint, dh in zip(arm["joints"], arm["dh"], strict=True):
         numbers = (
@@ -143,8 +143,8 @@ def _table(arm: dict[str, Any], infeasible_path: str) -> list[str]:
         f"below {_number(pen['clearance_mm'])} mm"
     )
     reach, canvas = arm["reach_mm"], arm["canvas"]
-    if infeasible_path:
-        lines.append(f"canvas: none ({infeasible_path})")
+    if refusal:
+        lines.append(f"canvas: none ({refusal})")
         return lines
     corners = ", ".join(f"({_number(x)}, {_number(y)})" for x, y in canvas["corners_arm_mm"])
     lines.append(f"reach: {_number(reach['min'])} to {_number(reach['max'])} mm from the base")

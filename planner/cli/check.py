@@ -1,4 +1,4 @@
-"""`plan check traj.csv`: an independent check result."""
+"""`plan check traj.csv`: an independent check of a trajectory."""
 
 from __future__ import annotations
 

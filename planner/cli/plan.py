@@ -35,7 +35,7 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan predict traj.csv     how well an arm is going to draw
   plan jog --arm ARM        one joint at a time, on the first day of an arm
   plan ports                list the serial devices that are plugged in
-  plan check traj.csv       an independent check result on a trajectory
+  plan check traj.csv       an independent check of a trajectory
   plan plot traj.csv -o F   pictures of a trajectory
   plan compare DRAWING.svg  the same points by every method of inverse kinematics
   plan measure PHOTO        where the marks of a calibration sheet came
@@ -135,7 +135,7 @@ def _parser() -> Parser:
         "--report",
         type=output_file,
         metavar="DIR",
-        help="write DIR/index.html too: a page with summary, pictures, tables and the check's check result",
+        help="write DIR/index.html too: a page with summary, pictures, tables and the result of the check",
     )
     add_plan_options(parser)
     return parser

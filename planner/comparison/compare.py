@@ -122,7 +122,7 @@ def _result(
         return MethodResult(method, Figures(), None, refusal=str(error))
     missed = np.flatnonzero(~measured.solved)
     failures = (
-        [Failures("targets", len(missed), method.infeasible_path, tuple(targets.tips_mm[missed[0]].tolist()))]
+        [Failures("targets", len(missed), method.unsolved, tuple(targets.tips_mm[missed[0]].tolist()))]
         if len(missed)
         else []
     )

@@ -18,7 +18,7 @@ from planner.settings import PlanSettings
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StrokeTimes:
-    """seconds: (n_strokes,) with the pen down, NaN where the method is refused; infeasible paths: why, stroke by
+    """seconds: (n_strokes,) with the pen down, NaN where the method is refused; infeasible_paths: why, stroke by
     stroke."""
 
     seconds: FloatArray

@@ -112,7 +112,7 @@ def beyond_limits(arm: Arm, joints: FloatArray) -> FloatArray:
 
 
 def _steps(targets: Targets, found: Measured) -> FloatArray:
-    """(m, n_joints) changes from a target to the next of its course, both of them solved."""
+    """(m, n_joints) changes from a target to the next of its sequence, both of them solved."""
     after = np.setdiff1d(np.arange(1, len(found.solved)), targets.firsts)
     after = after[found.solved[after] & found.solved[after - 1]]
     step: FloatArray = found.joints[after] - found.joints[after - 1]

@@ -19,7 +19,7 @@ from planner.redundancy.configuration_map import branch_references
 from planner.settings import ConfigurationWeights, Method
 
 Solve = Callable[[Targets, FloatArray], Solutions]
-"""Targets, and the joints (n_joints,) that each course of them starts from."""
+"""Targets, and the joints (n_joints,) that each sequence of them starts from."""
 
 _ROUNDING_MM = 1e-6
 
@@ -27,14 +27,14 @@ _ROUNDING_MM = 1e-6
 @dataclass(frozen=True, slots=True)
 class ComparedMethod:
     """build: the solver for an arm; it raises PlannerError where the arm has none. tolerance_mm: how far from its
-    target a solved tip may be. infeasible path: why a target is not solved. drawn_by: the method that `plan` draws
+    target a solved tip may be. unsolved: why a target is not solved. drawn_by: the method that `plan` draws
     with."""
 
     name: str
     title: str
     build: Callable[[ArmModel, ConfigurationWeights], Solve]
     tolerance_mm: float
-    infeasible_path: str
+    unsolved: str
     iterates: bool
     drawn_by: Method | None
 
@@ -42,7 +42,7 @@ class ComparedMethod:
 def _by_dls(settings: dls.DlsSettings) -> Callable[[ArmModel, ConfigurationWeights], Solve]:
     def build(model: ArmModel, weights: ConfigurationWeights) -> Solve:
         solver = dls.DlsSolver(model.kinematics)
-        return lambda targets, start: _course_by_course(
+        return lambda targets, start: _one_by_one(
             targets, lambda tips_mm: solver.solve_sequence(tips_mm, start, settings)
         )
 
@@ -51,7 +51,7 @@ def _by_dls(settings: dls.DlsSettings) -> Callable[[ArmModel, ConfigurationWeigh
 
 def _by_nlp(model: ArmModel, weights: ConfigurationWeights) -> Solve:
     solver, independent_of = nlp.NlpSolver(model.kinematics), model.arm.independent_of
-    return lambda targets, start: _course_by_course(
+    return lambda targets, start: _one_by_one(
         targets,
         lambda tips_mm: solver.solve_sequence(
             tips_mm, independent_of(start), settle=targets.kind is TargetKind.DRAWING
@@ -83,8 +83,8 @@ def _by_path(model: ArmModel, weights: ConfigurationWeights) -> Solve:
     return solve
 
 
-def _course_by_course(targets: Targets, solve_course: Callable[[FloatArray], Solutions]) -> Solutions:
-    found = [solve_course(course) for course in np.split(targets.tips_mm, targets.firsts[1:])]
+def _one_by_one(targets: Targets, solve_sequence: Callable[[FloatArray], Solutions]) -> Solutions:
+    found = [solve_sequence(tips_mm) for tips_mm in np.split(targets.tips_mm, targets.firsts[1:])]
     return Solutions(
         *(
             np.concatenate([getattr(each, name) for each in found])

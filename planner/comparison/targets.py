@@ -31,9 +31,9 @@ class TargetKind(StrEnum):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Targets:
-    """Tips (n, 3), arm mm, in courses that begin at firsts (n_courses,): a method that goes from configuration to
-    configuration begins each course from the start. along_mm: (n,) the way along the course, zero where there is none.
-    strokes: those (n, 2) of a drawing."""
+    """Tips (n, 3), arm mm, in sequences that begin at firsts (n_sequences,): a method that goes from configuration to
+    configuration begins each sequence from the start. along_mm: (n,) the way along the sequence, zero where there is
+    none. strokes: those (n, 2) of a drawing."""
 
     kind: TargetKind
     tips_mm: FloatArray
@@ -42,8 +42,8 @@ class Targets:
     strokes: Sequence[FloatArray] = ()
 
     def backwards(self) -> Targets:
-        """Everything in the opposite order: the last course first, from its end. Random targets become one course, so
-        that each is met from another configuration than the start."""
+        """Everything in the opposite order: the last sequence first, from its end. Random targets become one sequence,
+        so that each is met from another configuration than the start."""
         firsts = len(self.tips_mm) - np.append(self.firsts, len(self.tips_mm))[:0:-1]
         if self.kind is TargetKind.RANDOM:
             firsts = firsts[:1]
@@ -87,7 +87,7 @@ def random_targets(kinematics: Kinematics, count: int, seed: int) -> Targets:
 def targets_along(strokes: Sequence[FloatArray]) -> Targets:
     """Targets about a millimetre apart along strokes (n, 2), both ends included; a tap is one."""
     tips, along = zip(*map(_stations, strokes), strict=True)
-    firsts = starts_of(np.array([len(course) for course in tips]))[:-1]
+    firsts = starts_of(np.array([len(sequence) for sequence in tips]))[:-1]
     joined = np.concatenate(tips)
     return Targets(
         TargetKind.DRAWING, np.column_stack((joined, np.zeros(len(joined)))), firsts, np.concatenate(along), strokes

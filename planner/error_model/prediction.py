@@ -27,7 +27,7 @@ _WAVES = 8
 _WAVE_MM = 70.0
 _WITHIN_S = 0.3
 _CHOSEN = 200
-"""Postures from which the errors of an arm that was never calibrated are told."""
+"""Configurations from which the errors of an arm that was never calibrated are told."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -35,7 +35,7 @@ class StrokeChunk:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TravelChunk:
-    """Neighbouring travel moves: where each leaves and meets the paper, None at the ends of the drawing."""
+    """Neighbouring travel moves: where each starts and ends on the paper, None at the ends of the drawing."""
 
     context: PlanContext
     rules: TravelRules

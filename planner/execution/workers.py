@@ -1,4 +1,4 @@
-"""Work in work chunks: in this process and processes beside it, or on a Dask cluster.
+"""Work chunks, done in this process and processes beside it, or on a Dask cluster.
 
 Results come in the order of the work chunks, whoever did them, so that nothing of the outcome depends on the number of
 workers. The doorway to loky, whose processes start without running the main module anew, and to Dask.
@@ -53,7 +53,7 @@ ALONE = Workers()
 
 
 class ChunkExecutor(Protocol):
-    """Those who do the work."""
+    """Runs work chunks: this process alone, with others, or a cluster."""
 
     def __call__(self, work: Callable[[Chunk], Result], chunks: Iterable[Chunk]) -> Iterator[Result]:
         """The results of all work chunks in their order."""
@@ -62,7 +62,7 @@ class ChunkExecutor(Protocol):
 
 @contextmanager
 def executor_of(workers: Workers, prepare: Callable[[], None] | None = None) -> Iterator[ChunkExecutor]:
-    """The executor, for as long as it is needed. Each process beside this one calls `prepare` as it starts. Errors:
+    """An executor, for as long as it is needed. Each process beside this one calls `prepare` as it starts. Errors:
     UsageError where the cluster cannot be had."""
     if workers.are_here:
         yield _in_turn

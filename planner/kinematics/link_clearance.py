@@ -1,4 +1,4 @@
-"""How much room is left between the links of an arm, and between them and the paper.
+"""How much clearance is left between the links of an arm, and between them and the paper.
 
 A link whose thickness is known is a capsule about each of the two segments of its row, along d and along a. The
 clearance of two capsules is the distance of their segments less half of each thickness. Where a joint holds two
@@ -18,7 +18,7 @@ from planner.arms.arm import Arm, Joint, JointKind
 from planner.arrays import FloatArray, IntArray
 
 KEPT_MM = 0.1
-"""Room that is left at samples for what joints do between them."""
+"""Clearance that is left at samples for what joints do between them."""
 
 _SQUARE = 1e-9
 """Cosine of what is a right angle but for rounding: the segments of a row, and of rows that follow each other."""

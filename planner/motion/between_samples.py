@@ -1,6 +1,6 @@
 """Where the tip is between samples, by both ways in which controllers join them: straight joint lines, and cubics.
 
-A cubic goes through the four samples around, so the sample next to a touch bends the motion on the other side of it:
+A cubic goes through the four samples around, so the sample next to a contact bends the motion on the other side of it:
 the first step of a stroke tilts the pen's way down, and the last height of the way down pushes the pen into the paper.
 Every part of a trajectory is therefore measured as if it were held at its ends, and what it does to its neighbour is
 bounded beside that.
@@ -24,7 +24,7 @@ _WAY_PER_STEP = 6
 _PER_STEP = 4
 _FRACTIONS = np.arange(1, _PER_STEP) / _PER_STEP
 _ACROSS = 1 / (9 * np.sqrt(3))
-"""Largest weight of the sample behind a touch on the near side of it: of u (1 - u) (2 - u) / 6, u in 0 to 1."""
+"""Largest weight of the sample behind a contact on the near side of it: of u (1 - u) (2 - u) / 6, u in 0 to 1."""
 _STEPS_AT_ONCE = 4096
 
 
@@ -97,8 +97,8 @@ def stroke_excess(
 def travel_move_excess(
     kinematics: Kinematics,
     joints: Sequence[FloatArray],
-    touches_mm: Sequence[FloatArray],
-    is_touching: Sequence[tuple[bool, bool]],
+    contacts_mm: Sequence[FloatArray],
+    on_paper: Sequence[tuple[bool, bool]],
     clearance_mm: float,
     tolerance_mm: float,
 ) -> FloatArray:
@@ -106,25 +106,25 @@ def travel_move_excess(
     just allowed: below the clearance from the places that it leaves and comes down on, below the paper, and into its
     neighbours.
 
-    touches_mm: (2, 2) where it leaves and meets; is_touching: which of the two is on the paper. All this shrinks with
+    contacts_mm: (2, 2) where it starts and ends; on_paper: which of the two is on the paper. All this shrinks with
     the square of the speed at least, and so does the figure.
     """
     tips, n_steps = tips_between(kinematics, joints)
     bounds = np.cumsum(n_steps)[:-1]
     excess = np.zeros(len(joints))
-    for move, (near, samples, places, touching) in enumerate(
-        zip(np.split(tips, bounds), joints, touches_mm, is_touching, strict=True)
+    for move, (near, samples, places, on) in enumerate(
+        zip(np.split(tips, bounds), joints, contacts_mm, on_paper, strict=True)
     ):
         points = near.reshape(-1, 3)
         drift = np.min(
-            [np.hypot(*(points[:, :2] - place).T) for place, contact in zip(places, touching, strict=True) if contact],
+            [np.hypot(*(points[:, :2] - place).T) for place, contact in zip(places, on, strict=True) if contact],
             axis=0,
         )
         strays = np.minimum(drift, clearance_mm - points[:, 2])  # aside, it may be low only where it may be aside
         depth = max(float(strays.max(initial=0.0)), -float(points[:, 2].min(initial=0.0)))
         beside = samples[[min(1, len(samples) - 1), max(len(samples) - 2, 0)]]
         heights = np.abs(kinematics.tip_mm(kinematics.independent_of(beside))[:, 2])
-        across = np.cbrt(_ACROSS * heights[list(touching)].max() / (ACROSS_SHARE * tolerance_mm)) ** 2
+        across = np.cbrt(_ACROSS * heights[list(on)].max() / (ACROSS_SHARE * tolerance_mm)) ** 2
         excess[move] = max(depth / (DRIFT_SHARE * tolerance_mm), float(across))
     return excess
 

@@ -17,8 +17,8 @@ _STEP_S = 0.01
 """Second derivatives are differences over so long a motion of the fastest joint at its full speed."""
 
 
-def chord_error_limit(kinematics: Kinematics, paths: JointPaths, bulge_mm: float, rate_hz: float) -> FloatArray:
-    """(total cells,) cap on dsigma/dt in each cell, inf where the tip does not bulge."""
+def chord_error_limit(kinematics: Kinematics, paths: JointPaths, chord_error_mm: float, rate_hz: float) -> FloatArray:
+    """(total cells,) cap on dsigma/dt in each cell, inf where the tip keeps to the chord."""
     joints, slope = paths.positions(_MIDDLE)[:, 0], paths.positions(_MIDDLE, 1)[:, 0]
     hurry = np.abs(slope / kinematics.arm.max_velocity).max(axis=1)
     step = _STEP_S / np.maximum(hurry, 1e-12)
@@ -27,5 +27,5 @@ def chord_error_limit(kinematics: Kinematics, paths: JointPaths, bulge_mm: float
     )
     bend = np.linalg.norm(before - 2 * at + behind, axis=1) / step**2
     with np.errstate(divide="ignore"):
-        cap: FloatArray = rate_hz * np.sqrt(8 * bulge_mm / bend)
+        cap: FloatArray = rate_hz * np.sqrt(8 * chord_error_mm / bend)
     return cap

@@ -52,7 +52,7 @@ def _cut_at_border(stroke: FloatArray, reach_mm: float) -> FloatArray:
     """The stroke with a point where it crosses the border of the square of `reach_mm` around the base, so that a line
     that comes from miles away need not be probed all along (Liang and Barsky, 1984)."""
     begins, steps = stroke[:-1], np.diff(stroke, axis=0)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # steps may be next to nothing
         crossings = np.stack([(side * reach_mm - begins) / steps for side in (-1.0, 1.0)])
     enters = np.nan_to_num(crossings.min(axis=0), nan=-np.inf).max(axis=1, initial=0.0)
     leaves = np.nan_to_num(crossings.max(axis=0), nan=np.inf).min(axis=1, initial=1.0)

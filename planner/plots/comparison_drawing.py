@@ -111,7 +111,7 @@ def _draw_map(axes: Axes, arm: Arm, targets: Targets, result: MethodResult, meas
 def _draw_errors(axes: Axes, along: FloatArray, able: list[tuple[MethodResult, Measured]], targets: Targets) -> None:
     for result, measured in able:
         error = np.where(measured.solved, np.maximum(measured.error_mm, _FLOOR_MM), np.nan)
-        _draw_course(axes, along, error, result, targets)
+        _draw_positions(axes, along, error, result, targets)
     axes.set_yscale("log")
     axes.set_ylabel("tip's error (mm)")
 
@@ -124,17 +124,17 @@ def _draw_joints(
     targets: Targets,
     look: Look,
 ) -> None:
-    """A panel a joint: its course by every method, and what is beyond its limits tinted."""
+    """A panel a joint: its positions by every method, and what is beyond its limits tinted."""
     lowest, highest = arm.to_file_units(arm.minimum), arm.to_file_units(arm.maximum)
     for index, (axes, joint) in enumerate(zip(panels, arm.joints, strict=True)):
-        courses = [
+        joint_positions = [
             (result, np.where(measured.solved, arm.to_file_units(measured.joints)[:, index], np.nan))
             for result, measured in able
         ]
-        for result, course in courses:
-            _draw_course(axes, along, course, result, targets)
-        least = min(float(np.nanmin(course)) for _, course in courses)
-        most = max(float(np.nanmax(course)) for _, course in courses)
+        for result, positions in joint_positions:
+            _draw_positions(axes, along, positions, result, targets)
+        least = min(float(np.nanmin(positions)) for _, positions in joint_positions)
+        most = max(float(np.nanmax(positions)) for _, positions in joint_positions)
         room = 0.08 * max(most - least, 1.0)
         low, high = float(lowest[index]), float(highest[index])
         bottom, top = least - room, most + room
@@ -148,7 +148,7 @@ def _draw_joints(
         axes.yaxis.label.set_parse_math(False)
 
 
-def _draw_course(axes: Axes, along: FloatArray, values: FloatArray, result: MethodResult, targets: Targets) -> None:
+def _draw_positions(axes: Axes, along: FloatArray, values: FloatArray, result: MethodResult, targets: Targets) -> None:
     """A line that is broken between strokes."""
     breaks, line = targets.firsts[1:], line_of(result)
     axes.plot(

@@ -3,7 +3,7 @@
 An arm whose first joint turns about the vertical meets a paper point (rho, azimuth) with the configuration of
 (rho, 0) turned by the azimuth. So the arm's redundancy has to be decided along one line only, from
 the inner to the outer radius, and the choice is global: a dynamic program over sampled configurations finds
-the branch and the coarse course, further ones over its neighbours polish it. The same paper point
+the branch and a coarse configuration path, further ones over its neighbours polish it. The same paper point
 is then always drawn with the same configuration, whatever the drawing. Where the paper does not lie square to the base
 axis, the map is that of a level paper of the same height, and the configurations nearest to it are taken.
 """
@@ -43,12 +43,12 @@ _FEWEST_RADII = 2
 """Sampled radii that a further branch has to add."""
 _NODES = 81
 _LEAST_RING_MM = 1.0
-"""No course can be laid through less."""
+"""No configuration path can be laid through less."""
 _ROUNDING_MM = 2.0
 """Corners, where one joint comes to rest and another starts, become bends: the standard deviation of the weights."""
 _DEGREE = 5
 _EDGE_MM = 1.0
-"""The field is laid out over sqrt(outer + this - rho): near the stretched arm configurations go with that root."""
+"""The map is laid out over sqrt(outer + this - rho): near the stretched arm configurations go with that root."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +93,7 @@ class ConfigurationMap:
         return np.hypot(at_mm[..., 0], at_mm[..., 1]), np.arctan2(at_mm[..., 1], at_mm[..., 0])
 
     def reference(self, tip_mm: FloatArray) -> FloatArray:
-        """(n, n_independent) field configurations at tips (n, 3), whatever their height; outside the map's radii,
+        """(n, n_independent) the map's configurations at tips (n, 3), whatever their height; outside the map's radii,
         those of its edge."""
         radius, azimuth = self.polar(tip_mm)
         sigma = self._sigma(radius)
@@ -166,8 +166,8 @@ def _configuration_map(
 
 
 def branch_references(branches: Sequence[ConfigurationMap], tips_mm: FloatArray, starts: IntArray) -> FloatArray:
-    """(n, n_independent) field configurations at tips (n, 3), those of each path in the branch that holds most of it.
-    starts: (n_paths,) the first tip of each."""
+    """(n, n_independent) the map's configurations at tips (n, 3), those of each path in the branch that holds most of
+    it. starts: (n_paths,) the first tip of each."""
     if len(branches) == 1 or len(tips_mm) == 0:
         return branches[0].reference(tips_mm)
     held = np.array([np.add.reduceat(branch.reaches(tips_mm[:, :2]), starts, dtype=np.int64) for branch in branches])
@@ -214,8 +214,8 @@ def choice_of_configurations(
 def sharp_configuration_path(
     cost: ConfigurationCost, radii_mm: FloatArray, samples: list[FloatArray], wanted: BoolArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
-    """The field before its corners are rounded: its radii (n,) and configurations (n, n_independent). Errors: PlanError
-    where the course through the samples leaves its branch between them."""
+    """The map before its corners are rounded: its radii (n,) and configurations (n, n_independent). Errors: PlanError
+    where the path through the samples leaves its branch between them."""
     kinematics = cost.kinematics
     radii, configurations = stretched_to_edges(
         kinematics, *cheapest_configuration_path(cost, radii_mm, samples, wanted)

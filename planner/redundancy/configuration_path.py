@@ -1,9 +1,9 @@
 """The configuration path from the inner to the outer radius: a dynamic program over samples of all configurations finds
 it, dynamic programs over ever closer neighbours polish it.
 
-The cost of a course has a corner wherever a joint stands still, and the best courses consist of corners: each stretch
+The cost of a path has a corner wherever a joint stands still, and the best paths consist of corners: each stretch
 of radii has its resting joint. A solver that follows derivatives needs the corners rounded, and then stops at the first
-course where rounding leaves nothing to gain. So the neighbours are configurations in which one joint has one of a few
+path where rounding leaves nothing to gain. So the neighbours are configurations in which one joint has one of a few
 values that are the same at all radii: a joint can rest over any stretch, exactly.
 """
 
@@ -74,10 +74,10 @@ def cheapest_configuration_path(
 def polished_configuration_path(
     cost: ConfigurationCost, along_mm: FloatArray, tips_mm: FloatArray, configuration_path: FloatArray
 ) -> FloatArray:
-    """(n, n_independent) the course that costs least among those near a first one, all usable and exact like it.
+    """(n, n_independent) the path that costs least among those near a first one, all usable and exact like it.
 
-    along_mm: (n,) increasing, the radii or the way along another line; tips_mm: (n, 3) its points; course: (n,
-    n_independent) with no jump.
+    along_mm: (n,) increasing, the radii or the way along another line; tips_mm: (n, 3) its points; configuration_path:
+    (n, n_independent) with no jump.
     """
     if cost.kinematics.n_redundant == 0:
         return configuration_path
@@ -97,7 +97,7 @@ def polished_configuration_path(
 def _neighbours(
     cost: ConfigurationCost, tips_mm: FloatArray, configuration_path: FloatArray, spacing_s: float
 ) -> list[FloatArray]:
-    """At each tip the configuration of the course first, then usable ones nearby in which one joint (not the first,
+    """At each tip the configuration of the path first, then usable ones nearby in which one joint (not the first,
     which the azimuth decides) is at a multiple of its spacing: spacing_s times its speed."""
     kinematics, arm = cost.kinematics, cost.kinematics.arm
     matrix, constant = arm.coupling_matrix

@@ -14,10 +14,10 @@ from planner.kinematics.projection import joint_scale
 from planner.kinematics.quickest_lift import quickest_lifts
 
 LIMIT_MARGIN = 0.02
-"""Share of a joint's range that configurations keep from each end, so that lifts and blends have room."""
+"""Share of a joint's range that configurations keep from each end, so that lifts and blends have clearance."""
 
 LINK_CLEARANCE_MM = 1.0
-"""Room that configurations leave between links that have a thickness, for the same."""
+"""Clearance that configurations leave between links that have a thickness, for the same."""
 
 _NEAR_LIMIT = 3.0
 """A limit is near where so many lifts would pass it."""
@@ -47,8 +47,8 @@ def within_margins(kinematics: Kinematics, independent: FloatArray) -> BoolArray
     """(n, n_joints) which joints of configurations (n, n_independent) keep their limits with a margin."""
     arm = kinematics.arm
     joints = arm.complete(independent)
-    room = LIMIT_MARGIN * (arm.maximum - arm.minimum)
-    inside: BoolArray = (joints >= arm.minimum + room) & (joints <= arm.maximum - room)
+    margin = LIMIT_MARGIN * (arm.maximum - arm.minimum)
+    inside: BoolArray = (joints >= arm.minimum + margin) & (joints <= arm.maximum - margin)
     return inside
 
 

@@ -29,7 +29,7 @@ def starts_for_rays(kinematics: Kinematics) -> tuple[FloatArray, IntArray, Float
     """Radii (n,) of some rays, and random configurations (m, n_independent) with the rays (m,) that they come close
     to."""
     arm = kinematics.arm
-    random = np.random.default_rng(20220601)  # any seed will do; the same one always, for the same field
+    random = np.random.default_rng(20220601)  # any seed will do; the same one always, for the same map
     low, high = kinematics.independent_of(arm.minimum), kinematics.independent_of(arm.maximum)
     drawn = random.uniform(low, high, (_DRAWN, kinematics.n_independent))
     task, _ = kinematics.task_and_jacobian(drawn)
@@ -96,8 +96,8 @@ def turned_into_range(kinematics: Kinematics, found: FloatArray) -> FloatArray:
 def stretched_to_edges(
     kinematics: Kinematics, radii: FloatArray, configurations: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """The course carried on from its two ends to where configurations stop being usable, with all that it passes on the
-    way: what lies between its configurations has to be near them."""
+    """The configuration path carried on from its two ends to where configurations stop being usable, with all that it
+    passes on the way: what lies between its configurations has to be near them."""
     inner, first = _walk(kinematics, float(radii[0]), configurations[0], -COARSE_STEP_MM / 2)
     outer, last = _walk(kinematics, float(radii[-1]), configurations[-1], COARSE_STEP_MM / 2)
     return np.concatenate((inner[::-1], radii, outer)), np.concatenate((first[::-1], configurations, last))

@@ -1,2 +1,2 @@
-"""A plan told on one page: what it amounts to, pictures, tables and the check's check result, in a file that needs
+"""A plan told on one page: what it amounts to, pictures, tables and the result of the check, in a file that needs
 nothing else."""

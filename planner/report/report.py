@@ -96,7 +96,7 @@ def report_page(planned: Planned) -> Markup:
 def _check_result_in_brief(check_result: CheckResult) -> Markup:
     n_faults = len(check_result.faults)
     told = "check passed" if check_result.passed else f"check failed: {n_faults} fault{'' if n_faults == 1 else 's'}"
-    return element("p", told, class_=f"check result {'good' if check_result.passed else 'bad'}")
+    return element("p", told, class_=f"check-result {'good' if check_result.passed else 'bad'}")
 
 
 def _facts(summary: PlanSummary) -> Markup:

@@ -6,7 +6,7 @@ from planner.errors import UsageError
 
 MOST_SAMPLES = 5_000_000
 """Samples of a whole trajectory: 14 hours at 100 Hz, and some hundreds of megabytes."""
-MOST_SAMPLES_OF_A_HOP = 100_000
+MOST_SAMPLES_OF_A_TRAVEL_MOVE = 100_000
 """Samples of a single pen-up move, which is made at once."""
 SLOW_ARM = "raise the limits of the arm's joints, or choose a lower --rate"
 

@@ -34,7 +34,7 @@ def keeps_branch(kinematics: Kinematics, move: TravelMove, limits: Limits, rules
 def plan_branch_change(
     kinematics: Kinematics, limits: Limits, rules: TravelRules, start: Contact, end: Contact
 ) -> TravelMove:
-    """The travel move between two touches by way of the air; not exact where no way clear of the paper is found."""
+    """The travel move between two contacts by way of the air; not exact where no way clear of the paper is found."""
     up, down = plan_travel_moves(kinematics, limits, rules, [start, None], [None, end])
     corners = _way(
         kinematics, limits, rules, kinematics.independent_of(up.joints[-1]), kinematics.independent_of(down.joints[0])

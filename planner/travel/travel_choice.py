@@ -74,10 +74,10 @@ def rest_of(slopes: Slopes, limits: Limits, share: FloatArray) -> Limits:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Candidates:
-    """Travel moves of each travel move, all (n_travel_moves, n_leaps): the share of the limits that the height has
+    """Ways to make each travel move, all (n_travel_moves, n_candidates): the share of the limits that the height has
     above the handover, the height of the handover, those that the rise and the fall (backwards, as a rise) aim at, in
     mm, and the speed in mm/s that the fall keeps below. seconds: what the formulas make of it, inf where there is no
-    such travel move."""
+    such way."""
 
     share: FloatArray
     handover_mm: FloatArray
@@ -90,7 +90,7 @@ class Candidates:
 def quickest_candidates(
     slopes: Slopes, limits: Limits, clearance_mm: float, lift_mm: float, lowering_mm_s: float
 ) -> Candidates:
-    """The quickest travel moves of each travel move, one for each of some handovers and shares, the quickest first.
+    """The quickest ways to make each travel move, one for each of some handovers and shares, the quickest first.
 
     The heights, and the speeds below the cap at which the pen may come down, are the same whatever the clearance and
     the cap, which only say where the lists end: what a stricter rule allows is tried under a laxer one, too.
@@ -115,8 +115,7 @@ def _quickest_from(
     slopes: Slopes, limits: Limits, handover_mm: float, lift_mm: float, speeds_mm_s: FloatArray
 ) -> Candidates:
     """The quickest travel move for each share that hands over at that height. The fall passes it at any speed up to the
-    first
-    one: what the rise has in excess of the height that leads up to that is come down at this first one."""
+    first one: what the rise has in excess of the height that leads up to that is come down at this first one."""
     rises, falls = np.linspace(*_AIMS, _N_RISES) * handover_mm, np.linspace(*_AIMS, _N_FALLS) * handover_mm
     up_jerk, down_jerk = (coordinate_limits(slope, limits).jerk[:, None] for slope in (slopes.lifting, slopes.lowering))
     below_up_s, up_speed, up_acceleration = _rise(rises, handover_mm, up_jerk, np.inf)

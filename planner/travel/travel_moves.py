@@ -22,7 +22,7 @@ from planner.kinematics.projection import project
 from planner.kinematics.quickest_lift import quickest_lifts
 from planner.motion.between_samples import travel_move_excess
 from planner.motion.timed_stroke import Contact
-from planner.timing.length_bound import MOST_SAMPLES_OF_A_HOP, require_bounded
+from planner.timing.length_bound import MOST_SAMPLES_OF_A_TRAVEL_MOVE, require_bounded
 from planner.travel.ruckig_profile import NoSuchMove, RestToRest, between_states, rest_to_rest
 from planner.travel.travel_choice import (
     RESTING_SHARE,
@@ -38,9 +38,9 @@ _HEIGHT_PROBES = 33
 _FINE = 4
 """Samples per period at which limits are checked."""
 _TRIED = 40
-"""How many of the quickest travel moves by formulas are made at most, for each travel move."""
+"""How many of the candidates that are quickest by formulas are made at most, for each travel move."""
 _WORTH = 0.98
-"""Share of the time of the best so far that a travel move has to be below, by formulas, to be made."""
+"""Share of the time of the best so far that a candidate has to be below, by formulas, to be made."""
 _ABOUT = (0.95, 1.0, 1.05)
 """Heights to aim at about the one that formulas find best, as they rank only."""
 _SLOWER, _MARGIN = 1.5, 0.98
@@ -98,7 +98,7 @@ def plan_travel_moves(
     start: Sequence[Contact | None],
     end: Sequence[Contact | None],
 ) -> list[TravelMove]:
-    """Travel moves from each `leave` to the `meet` of the same index. Where one of the two is None the travel move
+    """Travel moves from each `start` to the `end` of the same index. Where one of the two is None the travel move
     begins, or ends, at the lift height above the other, as at the two ends of a drawing."""
     axis_mm = kinematics.arm.paper.T_paper_base[:2, 3]
     shapes = [_Shape.of(rules, axis_mm, one, other) for one, other in zip(start, end, strict=True)]
@@ -126,7 +126,7 @@ def require_bounded_travel_moves(moves: Sequence[TravelMove], rules: TravelRules
         rules.rate_hz,
         "one pen-up move",
         _TOO_SLOW,
-        MOST_SAMPLES_OF_A_HOP,
+        MOST_SAMPLES_OF_A_TRAVEL_MOVE,
     )
 
 
@@ -284,7 +284,7 @@ class _Timed:
 
     def lasting(self, duration_s: float, rules: TravelRules) -> _Timed:
         """The same in `duration_s`, or in the longest that a move may last, which is noted then."""
-        longest_s = MOST_SAMPLES_OF_A_HOP / rules.rate_hz
+        longest_s = MOST_SAMPLES_OF_A_TRAVEL_MOVE / rules.rate_hz
         fits = duration_s <= longest_s
         return replace(
             self, factor=(duration_s if fits else longest_s) / self.natural_s, too_long_s=0.0 if fits else duration_s
@@ -369,7 +369,7 @@ class _Heights:
 
 @dataclass(frozen=True, slots=True)
 class _Aims:
-    """What a travel move is to be like: a row of `Travel moves`."""
+    """What a travel move is to be like: a row of `Candidates`."""
 
     share: float
     handover_mm: float
@@ -385,7 +385,7 @@ def _rows(limits: Limits) -> list[_Bounds]:
 def _turning_moves(
     shape: _Shape, over: RestToRest, heights: _Heights, rules: TravelRules, aims: _Aims
 ) -> Iterator[_Timed]:
-    """The travel moves that aim at about that height and turn without a halt, those that there are."""
+    """The ways that aim at about that height and turn without a halt, those that there are."""
     for about in _ABOUT:
         try:
             candidate = _turning_move(shape, over, heights, replace(aims, rise_mm=about * aims.rise_mm))

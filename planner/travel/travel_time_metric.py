@@ -23,7 +23,7 @@ def travel_time_metric(model: ArmModel) -> Callable[[FloatArray], FloatArray]:
         configurations = branch_references(
             branches, np.column_stack((points_mm, np.zeros(len(points_mm)))), np.arange(len(points_mm))
         )
-        embedded: FloatArray = arm.complete(configurations) / arm.max_jerk
-        return embedded
+        mapped: FloatArray = arm.complete(configurations) / arm.max_jerk
+        return mapped
 
     return embed

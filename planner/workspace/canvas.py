@@ -184,7 +184,7 @@ def canvas_of(model: ArmModel, kind: CanvasKind, lift_mm: float) -> Canvas:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Sector:
-    """Where field configurations are within limits: for each radius an interval of azimuth."""
+    """Where the map's configurations are within limits: for each radius an interval of azimuth."""
 
     configuration_map: ConfigurationMap
     radii_mm: FloatArray

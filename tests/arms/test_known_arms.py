@@ -1,5 +1,5 @@
 """Arms that the planner did not grow up with: of half a metre and a metre, with six and seven joints, and those that
-come along at other sizes. All of them have a field, and draw what the check accepts."""
+come along at other sizes. All of them have a configuration map, and draw what the check accepts."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def drawing(tmp_path: Path) -> Path:
     return file
 
 
-def require_exact_field(arm: Arm) -> None:
+def require_exact_map(arm: Arm) -> None:
     for sheet in model_of(arm).branches():
         tips = on_ray(np.linspace(sheet.radii_mm[0], sheet.radii_mm[-1], 200))
         independent, good = sheet.configurations_at(tips)
@@ -47,15 +47,15 @@ def require_exact_field(arm: Arm) -> None:
 
 
 @pytest.mark.parametrize("name", KNOWN_ARMS)
-def test_known_arms_have_an_exact_field_without_jumps(name: str) -> None:
-    require_exact_field(KNOWN_ARMS[name])
+def test_known_arms_have_an_exact_map_without_jumps(name: str) -> None:
+    require_exact_map(KNOWN_ARMS[name])
 
 
 @settings(max_examples=5)
 @given(st.sampled_from(known_arms()), st.floats(np.log(0.8), np.log(4.0)))
 def test_arms_of_any_size_have_one(name: str, log_factor: float) -> None:
     arm = scaled(load_once(name), float(np.exp(log_factor)))
-    require_exact_field(arm)
+    require_exact_map(arm)
     for kind in (CanvasKind.USABLE, CanvasKind.OPTIMAL):
         assert np.isfinite(canvas_of(model_of(arm), kind, arm.pen.lift_mm).corners_arm_mm).all()
 

@@ -220,20 +220,20 @@ def test_figures_along_a_drawing_are_recounted(name: str, seed: int) -> None:
     arm = load_once(name)
     targets, found = along_a_line(arm, seed)
     figures = asdict(figures_of(arm, targets, found, iterates=False))
-    courses = [range(a, b) for a, b in pairwise([*targets.firsts.tolist(), len(found.solved)])]
+    sequences = [range(a, b) for a, b in pairwise([*targets.firsts.tolist(), len(found.solved)])]
     for unit in ("deg", "mm"):
         chosen = [index for index, joint in enumerate(arm.joints) if joint.file_unit == unit]
         q = arm.to_file_units(found.joints)[:, chosen]
         again = arm.to_file_units(found.again)[:, chosen]
         steps = [
             abs(q[i + 1] - q[i]).max()
-            for c in courses
+            for c in sequences
             for i in c[:-1]
             if found.solved[i] and found.solved[i + 1] and chosen
         ]
         bends = [
             value
-            for c in courses
+            for c in sequences
             for i in c[1:-1]
             if found.solved[i - 1 : i + 2].all()
             for value in (q[i + 1] - 2 * q[i] + q[i - 1]) / (targets.along_mm[i] - targets.along_mm[i - 1]) ** 2

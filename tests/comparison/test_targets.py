@@ -35,9 +35,9 @@ def test_targets_go_along_each_stroke_from_end_to_end(strokes: list[np.ndarray])
 def test_backwards_is_every_stroke_from_its_end_and_twice_is_as_before(strokes: list[np.ndarray]) -> None:
     found = targets_along(strokes)
     back = found.backwards()
-    courses = np.split(found.tips_mm, found.firsts[1:])
-    for course, reverse in zip(courses[::-1], np.split(back.tips_mm, back.firsts[1:]), strict=True):
-        np.testing.assert_array_equal(course[::-1], reverse)
+    sequences = np.split(found.tips_mm, found.firsts[1:])
+    for sequence, reverse in zip(sequences[::-1], np.split(back.tips_mm, back.firsts[1:]), strict=True):
+        np.testing.assert_array_equal(sequence[::-1], reverse)
     again = back.backwards()
     np.testing.assert_array_equal(again.tips_mm, found.tips_mm)
     np.testing.assert_array_equal(again.firsts, found.firsts)

@@ -73,7 +73,7 @@ def test_the_same_bytes_whatever_the_number_of_workers(tmp_path: Path, monkeypat
     assert written[0] == written[1] == written[2]
 
 
-def test_an_obstacle_is_the_same_error_whoever_meets_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_infeasible_path_is_the_same_error_whoever_meets_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline, "_SMALL_BYTES", 0)
     drawing = scribbles(tmp_path / "scribbles.svg", 8, 100)
     settings = PlanSettings(arm="drawing_arm_2022", method=Method.CLOSED_FORM, fit=False, margin_mm=0.0)

@@ -78,12 +78,12 @@ def test_a_course_with_resting_ends_comes_back_to_sixth_order() -> None:
     """sin^3-like ends rest; halving the cells divides the error by about 2^6."""
 
     def error(cells: int) -> float:
-        def course(sigma: FloatArray) -> FloatArray:
+        def positions_at(sigma: FloatArray) -> FloatArray:
             return np.sin(np.pi * sigma / cells) ** 4
 
-        paths: JointPaths = interpolate(np.array([cells]), course(np.arange(cells + 1.0))[:, None])
+        paths: JointPaths = interpolate(np.array([cells]), positions_at(np.arange(cells + 1.0))[:, None])
         fractions = np.linspace(0, 1, 9)
-        wanted = course(np.arange(cells)[:, None] + fractions)
+        wanted = positions_at(np.arange(cells)[:, None] + fractions)
         return float(np.abs(paths.positions(fractions)[..., 0] - wanted).max())
 
     assert error(20) / error(40) > 40

@@ -1,4 +1,5 @@
-"""Clearance between links: against distances of points sampled along them, by plain geometry, and in the field."""
+"""Clearance between links: against distances of points sampled along them, by plain geometry, and in the configuration
+map."""
 
 from __future__ import annotations
 
@@ -127,13 +128,13 @@ def test_the_worst_of_a_sequence_is_told() -> None:
     assert KEPT_MM < LINK_CLEARANCE_MM
 
 
-def test_the_field_of_a_thick_arm_keeps_its_links_apart() -> None:
+def test_the_map_of_a_thick_arm_keeps_its_links_apart() -> None:
     arm = thick(load_once("drawing_arm"))
     clearance = kinematics_of(arm).clearance
-    thin, field = model_of(load_once("drawing_arm")).configuration_map(), model_of(arm).configuration_map()
+    thin, thick_map = model_of(load_once("drawing_arm")).configuration_map(), model_of(arm).configuration_map()
     assert clearance.least_mm(thin.configurations)[0].min() < -5.0  # what it is there for
-    radii = np.linspace(field.radii_mm[0], field.radii_mm[-1], 1000)
-    independent, good = field.configurations_at(np.column_stack((radii, np.zeros((1000, 2)))))
+    radii = np.linspace(thick_map.radii_mm[0], thick_map.radii_mm[-1], 1000)
+    independent, good = thick_map.configurations_at(np.column_stack((radii, np.zeros((1000, 2)))))
     assert good.all()
     assert clearance.least_mm(independent)[0].min() > 0.5 * LINK_CLEARANCE_MM
 

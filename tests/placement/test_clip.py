@@ -57,6 +57,12 @@ def test_what_is_kept_is_the_part_within_reach(strokes: list[FloatArray]) -> Non
     assert lost_whole <= len(strokes) <= len(kept) + lost_whole
 
 
+def test_a_step_next_to_nothing_is_no_cause_for_warnings() -> None:
+    stroke = np.array([[50.0, 0.0], [50.0, 1e-310], [60.0, 10.0]])
+    kept, lost_mm, _ = clip_strokes([stroke, stroke + 2 * OUTER_MM], in_ring, OUTER_MM)
+    assert len(kept) == 1 and lost_mm > 0
+
+
 def test_a_stroke_within_reach_is_left_as_it_is() -> None:
     stroke = np.array([[50.0, 0.0], [60.0, 10.0]])
     kept, lost_mm, lost_whole = clip_strokes([stroke], in_ring, OUTER_MM)

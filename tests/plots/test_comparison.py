@@ -71,9 +71,11 @@ def test_along_a_drawing_every_joint_is_shown_with_its_limits_and_strokes_apart(
     assert [axes.get_ylabel() for axes in panels] == ["tip's error (mm)", "q1 (deg)", "q2 (deg)", "q3 (mm)", "q4 (deg)"]
     for result, measured in able:
         for index, axes in enumerate(panels[1:]):
-            course = lines(axes, result.method.title)
-            assert np.flatnonzero(np.isnan(course[:, 1])).tolist() == [5]  # after the five targets of the first stroke
-            kept = course[~np.isnan(course[:, 1])]
+            positions = lines(axes, result.method.title)
+            assert np.flatnonzero(np.isnan(positions[:, 1])).tolist() == [
+                5
+            ]  # after the five targets of the first stroke
+            kept = positions[~np.isnan(positions[:, 1])]
             np.testing.assert_allclose(kept[:, 1], comparison.arm.to_file_units(measured.joints)[:, index])
             np.testing.assert_allclose(kept[:, 0], [0, 1, 2, 3, 4, 4, 5, 6, 7])
     for axes, (result, _) in zip(maps, able, strict=True):

@@ -17,7 +17,7 @@ from planner.trajectory import TRAVELLING, Trajectory
 RATE_HZ = 50.0
 
 
-def hopping() -> tuple[Trajectory, FloatArray]:
+def travelling() -> tuple[Trajectory, FloatArray]:
     """Comes down, dwells, draws, lifts and travels, in steps of a millimetre where it moves."""
     way = (
         [(0, 2 - k, Phase.LOWERING if k else Phase.TRAVELLING) for k in range(2)]
@@ -30,7 +30,7 @@ def hopping() -> tuple[Trajectory, FloatArray]:
     pen = tip_mm[:, 2] == 0
     trajectory = Trajectory(
         "any",
-        "travel move.svg",
+        "travelling.svg",
         "path",
         RATE_HZ,
         ("x_mm",),
@@ -43,7 +43,7 @@ def hopping() -> tuple[Trajectory, FloatArray]:
 
 
 def test_each_step_has_the_phase_that_it_is_made_of() -> None:
-    trajectory, tip_mm = hopping()
+    trajectory, tip_mm = travelling()
     assert [Phase(phase).name for phase in phases_of(trajectory, tip_mm, 1.0)] == (
         ["TRAVELLING", "LOWERING"] + ["RESTING"] * 3 + ["DRAWING"] * 5 + ["LIFTING"] + ["TRAVELLING"] * 4
     )
@@ -63,7 +63,7 @@ def test_the_phases_add_up_to_the_duration(seed: int, n_samples: int, clearance_
 
 
 def test_bars_lie_where_the_phases_do_and_totals_beside_them() -> None:
-    trajectory, tip_mm = hopping()
+    trajectory, tip_mm = travelling()
     height, rows, totals = plot_timeline(trajectory, tip_mm, 1.0).axes
     phases = phases_of(trajectory, tip_mm, 1.0)
     middles_s = (np.arange(len(phases)) + 0.5) / RATE_HZ
@@ -84,7 +84,7 @@ def test_bars_lie_where_the_phases_do_and_totals_beside_them() -> None:
 
 
 def test_a_part_of_the_time_is_counted_alone() -> None:
-    trajectory, tip_mm = hopping()
+    trajectory, tip_mm = travelling()
     figure = plot_timeline(trajectory, tip_mm, 1.0, from_s=0.04, to_s=0.12)
     height, rows, totals = figure.axes
     assert sum(bar.get_width() for bar in totals.patches) == pytest.approx(0.08)

@@ -121,7 +121,7 @@ def test_the_same_arm_has_the_same_configuration_map() -> None:
     np.testing.assert_array_equal(one.configurations, other.configurations)
 
 
-def test_an_arm_that_cannot_have_a_field_is_told_why() -> None:
+def test_an_arm_that_cannot_have_a_map_is_told_why() -> None:
     arm = load_once("drawing_arm")
     sliding = replace(arm, joints=(replace(arm.joints[0], kind=JointKind.PRISMATIC), *arm.joints[1:]))
     with pytest.raises(PlanError, match="turns about the vertical"):

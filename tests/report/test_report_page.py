@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 import shlex
 from pathlib import Path
 
@@ -42,6 +43,7 @@ def test_a_page_in_the_place_of_another(tmp_path: Path) -> None:
     assert not seen.open
     _asks_for_nothing(seen, text)
     _has_pictures_for_light_and_dark(seen)
+    _styles_every_class(seen, text)
     _tells_what_was_planned(seen.text, shlex.join(["plan", *command]))
 
 
@@ -54,6 +56,13 @@ def _asks_for_nothing(page: Reader, text: str) -> None:
     assert all(value is not None and value.startswith("data:image/png;base64,") for value in addresses)
     assert "url(" not in text
     assert "@import" not in text
+
+
+def _styles_every_class(page: Reader, text: str) -> None:
+    """A class that no rule of the page knows is a misprint; cells of text look as cells do anyhow."""
+    used = {name for _, attributes in page.tags for name in (attributes.get("class") or "").split()}
+    styled = set(re.findall(r"\.([a-z][a-z-]*)", text.partition("</style>")[0]))
+    assert used - styled == {"text"}
 
 
 def _has_pictures_for_light_and_dark(page: Reader) -> None:
@@ -84,15 +93,13 @@ def _tells_what_was_planned(told: list[str], command: str) -> None:
         assert line in told, line
 
 
-@pytest.mark.parametrize(
-    "infeasible_path", ["a file", "a file in between", "a folder of the page's name", "the trajectory"]
-)
+@pytest.mark.parametrize("in_the_way", ["a file", "a file in between", "a folder of the page's name", "the trajectory"])
 def test_a_page_that_cannot_be_written_is_refused_before_planning(
-    infeasible_path: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    in_the_way: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     drawing, folder, target = tmp_path / "drawing.svg", tmp_path / "report", tmp_path / "traj.csv"
     drawing.write_text("not read")
-    match infeasible_path:
+    match in_the_way:
         case "a file":
             folder.write_text("in the way")
         case "a file in between":

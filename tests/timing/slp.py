@@ -22,7 +22,7 @@ Derivative = Callable[[FloatArray, int], FloatArray]
 _FRACTIONS = (0.0, 0.5, 1.0)
 _SIMPSON = (1 / 6, 4 / 6, 1 / 6)
 _MOST_ROUNDS = 120
-_SETTLED = 2e-5
+_CONVERGED = 2e-5
 
 
 def least_time_s(
@@ -88,7 +88,7 @@ def least_time_s(
         if faster < time:
             gained, x, time = time - faster, found, faster
             trust = min(1.5 * trust, 2.0)
-            if gained < _SETTLED * time:
+            if gained < _CONVERGED * time:
                 break
         else:
             trust *= 0.3

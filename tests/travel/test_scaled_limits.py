@@ -25,7 +25,7 @@ decades = st.floats(-1.5, 2.5).map(lambda decade: 10.0**decade)
 
 
 @lru_cache
-def touches_of(name: str) -> tuple[Contact, ...]:
+def contacts_of(name: str) -> tuple[Contact, ...]:
     """Places about a centimetre and about five apart, in the middle of the arm's reach."""
     arm = load_once(name)
     configuration_map = model_of(arm).configuration_map()
@@ -42,7 +42,7 @@ def scaled(limits: Limits, factors: FloatArray) -> Limits:
     return Limits(limits.velocity * factors[0], limits.acceleration * factors[1], limits.jerk * factors[2])
 
 
-def assert_hops_within(arm: Arm, limits: Limits, contacts: tuple[Contact, ...]) -> None:
+def assert_travel_moves_within(arm: Arm, limits: Limits, contacts: tuple[Contact, ...]) -> None:
     moves = plan_travel_moves(
         kinematics_of(arm), limits, TravelRules(1.0, 5.0, 30.0, RATE_HZ, 0.05), [None, *contacts], [*contacts, None]
     )
@@ -59,7 +59,7 @@ def test_hops_are_found_whatever_the_proportion_of_the_limits(name: str, data: s
     arm = load_once(name)
     count = 3 * arm.n_joints
     factors = np.array(data.draw(st.lists(decades, min_size=count, max_size=count))).reshape(3, arm.n_joints)
-    assert_hops_within(arm, scaled(Limits.of(arm), factors), touches_of(name))
+    assert_travel_moves_within(arm, scaled(Limits.of(arm), factors), contacts_of(name))
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def test_one_limit_out_of_proportion_costs_candidates_alone(
     limits = Limits.of(arm)
     changed = getattr(limits, key.removeprefix("max_")).copy()
     changed[joint] = value
-    assert_hops_within(arm, replace(limits, **{key.removeprefix("max_"): changed}), touches_of(name))
+    assert_travel_moves_within(arm, replace(limits, **{key.removeprefix("max_"): changed}), contacts_of(name))
 
 
 def test_ends_that_mirror_each_other_are_refused_and_do_not_crash() -> None:

@@ -1,4 +1,4 @@
-"""Pen-up moves: from touch to touch, at rest there, straight up and down near the paper, within all limits."""
+"""Pen-up moves: from contact to contact, at rest there, straight up and down near the paper, within all limits."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ def move(arm: Arm, start: Contact | None, end: Contact | None, how: TravelRules)
 def travel_moves_of(name: str) -> tuple[Arm, list[Contact], list[TravelMove]]:
     """From the lift height over all places and up again."""
     arm = load_once(name)
-    touched = contacts(arm, PLACES[name])
+    on_paper = contacts(arm, PLACES[name])
     return (
         arm,
-        touched,
-        plan_travel_moves(kinematics_of(arm), Limits.of(arm), rules(), [None, *touched], [*touched, None]),
+        on_paper,
+        plan_travel_moves(kinematics_of(arm), Limits.of(arm), rules(), [None, *on_paper], [*on_paper, None]),
     )
 
 
@@ -64,19 +64,21 @@ def flight(request: pytest.FixtureRequest) -> tuple[Arm, list[Contact], list[Tra
     return travel_moves_of(request.param)
 
 
-def test_hops_begin_and_end_exactly_at_the_touches(flight: tuple[Arm, list[Contact], list[TravelMove]]) -> None:
-    arm, touched, moves = flight
+def test_travel_moves_begin_and_end_exactly_at_the_contacts(
+    flight: tuple[Arm, list[Contact], list[TravelMove]],
+) -> None:
+    arm, on_paper, moves = flight
     assert all(move.exact for move in moves)
-    for index, contact in enumerate(touched):
+    for index, contact in enumerate(on_paper):
         for joints in (moves[index].joints[-1], moves[index + 1].joints[0]):
             np.testing.assert_allclose(joints, arm.complete(contact.configuration), atol=1e-9)
-    for joints, contact in ((moves[0].joints[0], touched[0]), (moves[-1].joints[-1], touched[-1])):
+    for joints, contact in ((moves[0].joints[0], on_paper[0]), (moves[-1].joints[-1], on_paper[-1])):
         np.testing.assert_allclose(tips_by_product(arm, joints[None])[0], [*contact.tip_mm, LIFT_MM], atol=1e-6)
 
 
 def test_the_tip_goes_straight_up_and_down_near_the_paper(flight: tuple[Arm, list[Contact], list[TravelMove]]) -> None:
-    arm, touched, moves = flight
-    for before, after, move in zip([None, *touched], [*touched, None], moves, strict=True):
+    arm, on_paper, moves = flight
+    for before, after, move in zip([None, *on_paper], [*on_paper, None], moves, strict=True):
         tips = tips_by_product(arm, move.joints)
         assert tips[:, 2].min() >= -1e-6 and tips[:, 2].max() <= LIFT_MM + 1e-6
         top = int(np.argmax(tips[:, 2]))
@@ -88,7 +90,9 @@ def test_the_tip_goes_straight_up_and_down_near_the_paper(flight: tuple[Arm, lis
                 assert np.abs(tips[part, :2] - contact.tip_mm).max() < 0.01
 
 
-def test_limits_hold_and_hops_begin_and_end_at_rest(flight: tuple[Arm, list[Contact], list[TravelMove]]) -> None:
+def test_limits_hold_and_travel_moves_begin_and_end_at_rest(
+    flight: tuple[Arm, list[Contact], list[TravelMove]],
+) -> None:
     """With the samples before and after held, as on the paper: a start that is not at rest shows as a jolt."""
     arm, _, moves = flight
     for move in moves:
@@ -99,13 +103,13 @@ def test_limits_hold_and_hops_begin_and_end_at_rest(flight: tuple[Arm, list[Cont
 
 def test_limits_hold_at_ten_times_the_samples() -> None:
     arm = load_once("drawing_arm")
-    touched = contacts(arm, PLACES["drawing_arm"][:3])
-    for start, end in pairwise(touched):
+    on_paper = contacts(arm, PLACES["drawing_arm"][:3])
+    for start, end in pairwise(on_paper):
         samples = move(arm, start, end, rules(1000.0)).joints
         assert (share_of_limits(samples, 0.001, Limits.of(arm)) <= 1.002).all()
 
 
-def test_a_hop_takes_the_same_time_whatever_the_rate_of_samples() -> None:
+def test_a_travel_move_takes_the_same_time_whatever_the_rate_of_samples() -> None:
     arm = load_once("drawing_arm")
     first, second = contacts(arm, PLACES["drawing_arm"][:2])
     times = [(len(move(arm, first, second, rules(rate)).joints) - 1) / rate for rate in (100.0, 500.0, 2000.0)]
@@ -140,14 +144,14 @@ def test_a_lift_as_high_as_the_clearance_is_enough() -> None:
     assert tips[away > 0.01, 2].min() > CLEARANCE_MM - 1e-6
 
 
-def test_a_hop_does_not_depend_on_the_others() -> None:
-    arm, touched, moves = travel_moves_of("drawing_arm")
+def test_a_travel_move_does_not_depend_on_the_others() -> None:
+    arm, on_paper, moves = travel_moves_of("drawing_arm")
     for index in (0, 2, 5):
-        alone = move(arm, touched[index - 1] if index else None, touched[index], rules())
+        alone = move(arm, on_paper[index - 1] if index else None, on_paper[index], rules())
         np.testing.assert_allclose(alone.joints, moves[index].joints, atol=1e-12)
 
 
-def test_short_hops_come_near_the_bound_of_their_parts() -> None:
+def test_short_travel_moves_come_near_the_bound_of_their_parts() -> None:
     """No travel move is sooner up than by jerk alone, sooner down than by the cap, or sooner over than at full jerk: a
     travel move that rested at its top, or gave each motion a fixed share, would take a quarter longer than these
     together."""
@@ -231,8 +235,8 @@ def test_moves_from_rest_to_rest_keep_their_limits(
 
 
 def _whole_s(arm: Arm, how: TravelRules) -> float:
-    touched = contacts(arm, PLACES[arm.name])
-    made = plan_travel_moves(kinematics_of(arm), Limits.of(arm), how, touched[:-1], touched[1:])
+    on_paper = contacts(arm, PLACES[arm.name])
+    made = plan_travel_moves(kinematics_of(arm), Limits.of(arm), how, on_paper[:-1], on_paper[1:])
     return sum(len(one.joints) - 1 for one in made) / how.rate_hz
 
 

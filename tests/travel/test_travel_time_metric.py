@@ -1,4 +1,4 @@
-"""Distances between embedded points tell how long the arm travels between them."""
+"""Distances between mapped points tell how long the arm travels between them."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ def test_points_are_joined_by_the_joints_motion_over_its_jerk(name: str) -> None
     points = np.array([[100.0, 0.0], [100.0 * np.cos(0.3), 100.0 * np.sin(0.3)], [105.0, 0.0]])
     configurations, good = model_of(arm).configuration_map().configurations_at(np.column_stack((points, np.zeros(3))))
     assert good.all()
-    embedded = travel_time_metric(model_of(arm))(points)
+    mapped = travel_time_metric(model_of(arm))(points)
     np.testing.assert_allclose(
-        np.diff(embedded, axis=0) * arm.max_jerk, np.diff(arm.complete(configurations), axis=0), atol=1e-4
+        np.diff(mapped, axis=0) * arm.max_jerk, np.diff(arm.complete(configurations), axis=0), atol=1e-4
     )
     turn = np.zeros(arm.n_joints)
     turn[0] = 0.3 / arm.max_jerk[0]
-    np.testing.assert_allclose(embedded[1] - embedded[0], turn, atol=1e-12)
+    np.testing.assert_allclose(mapped[1] - mapped[0], turn, atol=1e-12)

@@ -46,7 +46,7 @@ def candidates(model: ArmModel, margin_mm: float, count: int, random: np.random.
     """So many places all over the usable canvas less a margin, the arm's redundancy used as widely as its limits
     allow, with room for the lift. Errors: PlanError where the arm has no canvas, or none that large."""
     arm, kinematics = model.arm, model.kinematics
-    field = model.configuration_map(WHERE_SLACK_IS_TAKEN_UP)
+    configuration_map = model.configuration_map(WHERE_SLACK_IS_TAKEN_UP)
     canvas = canvas_of(model, CanvasKind.USABLE, arm.pen.lift_mm)
     low = np.array([canvas.near_mm, canvas.right_mm]) + margin_mm
     high = np.array([canvas.far_mm, canvas.left_mm]) - margin_mm
@@ -60,7 +60,7 @@ def candidates(model: ArmModel, margin_mm: float, count: int, random: np.random.
     found: list[Candidates] = []
     for _ in range(_ROUNDS):
         tips = np.column_stack((random.uniform(low, high, (count, 2)), np.zeros(count)))
-        reference = field.reference(tips) + (
+        reference = configuration_map.reference(tips) + (
             random.uniform(0.0, 1.0, (count, 1)) * random.normal(0.0, spread, (count, kinematics.n_independent))
         )
         free, usable = project(kinematics, reference, tips)
@@ -68,7 +68,7 @@ def candidates(model: ArmModel, margin_mm: float, count: int, random: np.random.
         over = np.where(usable[:, None], free, reference) + random.normal(0.0, _COMING * spread, free.shape)
         raised, risen = project(kinematics, over, tips + np.array([0.0, 0.0, arm.pen.lift_mm]))
         usable &= risen & _kept(kinematics, raised)
-        drawn, exact = project(kinematics, field.reference(tips), tips)
+        drawn, exact = project(kinematics, configuration_map.reference(tips), tips)
         usable &= exact
         found.append(Candidates(tips[usable, :2], free[usable], raised[usable], drawn[usable]))
         if sum(map(len, found)) >= count:

@@ -113,7 +113,7 @@ static void on_flow(struct avr_irq_t *irq, uint32_t value, void *param)
     uart_full = param != NULL;
 }
 
-/* Feeds the line at its pace, and keeps a sleeping core from leaping further than a tick. */
+/* Feeds the line at its pace, and keeps a sleeping core from jumping further than a tick. */
 static avr_cycle_count_t tick(struct avr_t *mcu, avr_cycle_count_t when, void *param)
 {
     ticked = mcu->cycle;

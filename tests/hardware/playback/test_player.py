@@ -100,7 +100,7 @@ def test_set_point_k_is_due_at_k_periods_whatever_went_before(oversleep_s: list[
     np.testing.assert_allclose(played.late_s, np.percentile(times_s - k / rate_hz, (50, 99, 100)), atol=1e-9)
 
 
-def test_a_stall_puts_the_rest_off_instead_of_leaping() -> None:
+def test_a_stall_puts_the_rest_off_instead_of_jumping() -> None:
     clock = SleepyClock([0.0, 0.0, 0.0, 0.5])
     simulated = SimulatedArm(ARM, clock)
     played = play(_resting(10, 100.0), ARM, simulated, clock)

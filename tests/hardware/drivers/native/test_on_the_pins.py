@@ -102,7 +102,7 @@ def test_a_host_paused_for_2_s_finds_the_arm_standing_on_the_path_and_goes_on(co
     times_s, along = progress(controller.emulator, plan, since_s)
     assert (np.diff(along) > -2 * _NOISE).all() and along[-1] == pytest.approx(1.0, abs=_NOISE)
     fastest = np.diff(along) - np.diff(times_s) / 4.0
-    assert fastest.max() < 2 * _NOISE  # neither a leap nor hurrying to catch up
+    assert fastest.max() < 2 * _NOISE  # neither a jump nor hurrying to catch up
     standing = (times_s > paused_s + 0.9) & (times_s < paused_s + 2.0)
     assert np.ptp(along[standing]) < 2 * _NOISE and along[standing][0] < 0.9
 

@@ -29,9 +29,9 @@ from tests.hardware.observed import Observed
 
 N = 300
 RATE_HZ = 100.0
-STROKE, HOP = 4, 3
+STROKE, TRAVEL = 4, 3
 """Set points of strokes and between them, as short as taps: 40 ms."""
-LABELS = np.where(np.arange(N) % (STROKE + HOP) < STROKE, np.arange(N) // (STROKE + HOP), TRAVELLING)
+LABELS = np.where(np.arange(N) % (STROKE + TRAVEL) < STROKE, np.arange(N) // (STROKE + TRAVEL), TRAVELLING)
 N_STROKES = int(LABELS.max()) + 1
 LAST = [int(np.flatnonzero(np.equal(LABELS, stroke))[-1]) for stroke in range(N_STROKES)]
 DOUBT_S = {"maestro": 0.05, "maestro-crc": 0.05, "ssc32": 0.05, "feetech": 0.15, "dynamixel": 0.5}

@@ -42,9 +42,9 @@ def test_servos_glide_from_where_they_stand_to_the_pose_and_follow(name: str, ki
     driver.connect(POSE)
     assert model.goals[0] == REST
     assert model.goals[-1] == COUNTS
-    course = np.array([[goals[servo] for servo in COUNTS] for goals in model.goals])
+    sent = np.array([[goals[servo] for servo in COUNTS] for goals in model.goals])
     # A fifth of 200 deg/s, of 4096 counts a turn.
-    assert np.abs(np.diff(course, axis=0)).max() <= 40 * 0.02 * 4096 / 360 + 1
+    assert np.abs(np.diff(sent, axis=0)).max() <= 40 * 0.02 * 4096 / 360 + 1
     moved = POSE.copy()
     moved[3] += np.radians(2.0)
     driver.send(moved, 0.02)
