@@ -33,12 +33,12 @@ def dashes(count: int) -> str:
     return "".join(f'<path d="M{x:.1f} {y:.1f} l{dx:.1f} {dy:.1f}"/>' for x, y, dx, dy in rows.tolist())
 
 
-def warnings_of(folder: Path, paths: str, rate_hz: float = 100.0) -> list[str]:
+def warnings_of(folder: Path, paths: str, rate_hz: float = 100.0, tolerance_mm: float = 0.05) -> list[str]:
     drawing = folder / "drawing.svg"
     drawing.write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">{paths}</svg>'
     )
-    return plan(drawing, PlanSettings(rate_hz=rate_hz), lambda *_: None).summary.warnings
+    return plan(drawing, PlanSettings(rate_hz=rate_hz, tolerance_mm=tolerance_mm), lambda *_: None).summary.warnings
 
 
 def test_a_pen_path_that_is_not_refined_to_the_end_is_off_the_drawing(
@@ -52,15 +52,15 @@ def test_a_pen_path_that_is_not_refined_to_the_end_is_off_the_drawing(
 def test_a_stroke_that_is_not_slowed_to_the_end_is_off_the_drawing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert warnings_of(tmp_path, WAVE_AND_HOOK, rate_hz=20.0) == []
+    assert warnings_of(tmp_path, WAVE_AND_HOOK, rate_hz=50.0, tolerance_mm=0.01) == []
     monkeypatch.setattr("planner.motion.held_motion._ROUNDS", 1)
-    assert warnings_of(tmp_path, WAVE_AND_HOOK, rate_hz=20.0) == [OFF_THE_DRAWING + "2 strokes"]
+    assert warnings_of(tmp_path, WAVE_AND_HOOK, rate_hz=50.0, tolerance_mm=0.01) == [OFF_THE_DRAWING + "2 strokes"]
 
 
 def test_pen_up_moves_that_slowing_does_not_help_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert warnings_of(tmp_path, WAVE_AND_HOOK, rate_hz=20.0) == []
+    assert warnings_of(tmp_path, WAVE_AND_HOOK, rate_hz=50.0, tolerance_mm=0.01) == []
     monkeypatch.setattr(travel_moves, "_HELPED", 1e-9)
-    assert warnings_of(tmp_path, WAVE_AND_HOOK, rate_hz=20.0) == [STRAYING + "3 pen-up moves"]
+    assert warnings_of(tmp_path, WAVE_AND_HOOK, rate_hz=50.0, tolerance_mm=0.01) == [STRAYING + "3 pen-up moves"]
 
 
 def test_a_change_of_branch_strays_where_its_way_up_or_down_does(monkeypatch: pytest.MonkeyPatch) -> None:

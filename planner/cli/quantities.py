@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Callable
 
+from planner.errors import UsageError
 from planner.settings import ConfigurationWeights
 
 MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4, "px": 25.4 / 96}
@@ -53,10 +54,10 @@ def configuration_weights(text: str) -> ConfigurationWeights:
         if not separator or name.strip() not in names:
             raise argparse.ArgumentTypeError(f"'{part}' is not NAME=NUMBER with a name out of {', '.join(names)}")
         weights[name.strip()] = _in_range(_finite(value, text), text, zero=True)
-    chosen = ConfigurationWeights(**weights)
-    if not any(getattr(chosen, name) for name in names):
-        raise argparse.ArgumentTypeError("the weights are all zero; at least one has to be positive")
-    return chosen
+    try:
+        return ConfigurationWeights(**weights)
+    except UsageError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def angle_deg(text: str) -> float:

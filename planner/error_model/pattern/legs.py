@@ -53,5 +53,8 @@ def rested(joints: FloatArray) -> FloatArray:
 
 
 def slowing_from_rest(limits: Limits, joints: FloatArray, rate_hz: float) -> float:
-    """As `Limits.slowing_of`, the arm at rest before the first sample and after the last."""
-    return limits.slowing_of(np.pad(joints, ((3, 3), (0, 0)), mode="edge"), 1 / rate_hz)
+    """As `Limits.slowing_of`, the arm at rest before the first sample and after the last: from rest, jerk alone moves a
+    joint J t^3 / 6 in the time t."""
+    within = limits.slowing_of(np.pad(joints, ((3, 3), (0, 0)), mode="edge"), 1 / rate_hz)
+    steps = np.abs(np.stack((joints[1] - joints[0], joints[-1] - joints[-2])))
+    return max(within, float(np.cbrt((6 * steps * rate_hz**3 / limits.jerk).max())))
