@@ -84,7 +84,7 @@ def __getattr__(name: str) -> object:
     try:
         value: object = getattr(import_module(_HOMES.get(name, "planner.errors")), name)
     except ImportError as error:
-        from drawing_arm_planner.damage import damage
+        from planner.entry.damage import damage
 
         complaint = damage(error)
         if complaint is None:

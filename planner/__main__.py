@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from drawing_arm_planner.command import main
+from planner.entry.command import main
 
 if __name__ == "__main__":
     sys.exit(main())

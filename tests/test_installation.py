@@ -40,8 +40,8 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M2 2 5
 def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder as pip leaves it: the packages, and the record of what belongs to the distribution."""
     site = tmp_path_factory.mktemp("site")
-    for package in PACKAGES:
-        shutil.copytree(ROOT / package, site / package, ignore=shutil.ignore_patterns("__pycache__", "configs"))
+    for package, source in zip(PACKAGES, ("planner", "hardware", "planner/entry"), strict=True):
+        shutil.copytree(ROOT / source, site / package, ignore=shutil.ignore_patterns("__pycache__", "configs"))
     shutil.copytree(ROOT / "configs", site / "planner/configs")
     record(site, "drawing_arm_planner", PACKAGES)
     return site

@@ -47,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception as error:
         if os.environ.get(TRACEBACK_VARIABLE):
             raise
-        from drawing_arm_planner.damage import damage
+        from planner.entry.damage import damage
 
         complaint = (
             damage(error) or f"this is a defect of the planner, not of the input: {type(error).__name__}: {error}"

@@ -7,7 +7,8 @@ from pathlib import Path
 
 NAME = "drawing-arm-planner"
 PACKAGES = ("planner", "hardware")
-HOME = Path(__file__).resolve().parent.parent
+_HERE = Path(__file__).resolve().parent
+HOME = _HERE.parent.parent if _HERE.parent.name == "planner" else _HERE.parent
 """The folder that all our packages are in."""
 ADVICE = f"install it in a virtual environment of its own: python -m venv drawing, then drawing/bin/pip install {NAME}"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from drawing_arm_planner.foreign import NAME, foreign
+from .foreign import NAME, foreign
 
 EXIT_DAMAGED = 70
 """As for any fault of the program itself: EX_SOFTWARE."""
@@ -21,7 +21,7 @@ def main() -> int:
             if planner.DISTRIBUTION != NAME:
                 raise ImportError("the package planner is another's")
         except Exception as error:  # whatever the code of strangers raises
-            from drawing_arm_planner.damage import damage
+            from .damage import damage
 
             complaint = damage(error)
             if complaint is None:

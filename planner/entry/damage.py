@@ -11,7 +11,7 @@ import hashlib
 from importlib.metadata import Distribution, PackageNotFoundError, distribution, packages_distributions
 from pathlib import Path
 
-from drawing_arm_planner.foreign import ADVICE, HOME, NAME, PACKAGES, foreign
+from .foreign import ADVICE, HOME, NAME, PACKAGES, foreign
 
 _SHOWN = 3
 
