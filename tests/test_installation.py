@@ -16,7 +16,7 @@ import pytest
 
 import planner
 
-ROOT = Path(planner.__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("planner", "hardware", "drawing_arm_planner")
 ALONE = """
 import os, sys
