@@ -9,7 +9,9 @@ from typing import IO
 
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.counted import counted
+from planner.drawing.copies import Copies
 from planner.errors import TrajectoryFileError
+from planner.settings import MOST_COPIES
 
 FORMAT_VERSION = 1
 LONGEST_LINE = 1 << 16
@@ -23,7 +25,7 @@ class Placement:
     canvas_mm: near and far side (arm x), right and left side (arm y) of the rectangle that it is within.
     margin_mm: kept free along the sides of that. scale: mm on paper for one on the page.
     rotate_deg: clockwise turn of the page before it is placed. mirror: left and right of the page change places
-    before it is turned.
+    before it is turned. copies: where there is more than one; the map is that of the first.
     """
 
     canvas_mm: tuple[float, float, float, float] | None = None
@@ -31,6 +33,7 @@ class Placement:
     scale: float | None = None
     rotate_deg: float | None = None
     mirror: bool = False
+    copies: Copies | None = None
 
 
 NOTHING_TOLD = Placement()
@@ -102,6 +105,9 @@ class Head:
         ]
         if placement.mirror:
             entries.append(("mirror", "yes"))
+        if (copies := placement.copies) is not None:
+            steps = f"{_shortest(copies.step_x_mm)} {_shortest(copies.step_y_mm)}"
+            entries.append(("copies", f"{copies.columns} {copies.rows} {steps}"))
         if self.left_out != NOTHING_LEFT_OUT:
             entries += [("left_out_mm", f"{self.left_out.length_mm:.6g}"), ("left_out_taps", str(self.left_out.taps))]
         return entries
@@ -175,7 +181,20 @@ def _placement(name: str, found: Mapping[str, tuple[str, int]]) -> Placement:
     mirror, line = found.get("mirror", ("no", None))
     if mirror not in ("yes", "no"):
         raise TrajectoryFileError(name, line, f"'# mirror:' is '{shown(mirror)}'; wanted yes or no")
-    return Placement(canvas_mm, margin_mm, scale, rotate_deg, mirror == "yes")
+    return Placement(canvas_mm, margin_mm, scale, rotate_deg, mirror == "yes", _copies(name, found))
+
+
+def _copies(name: str, found: Mapping[str, tuple[str, int]]) -> Copies | None:
+    if "copies" not in found:
+        return None
+    columns, rows, step_x_mm, step_y_mm = _numbers(name, found, "copies", 4)
+    if columns != int(columns) or rows != int(rows) or min(columns, rows) < 1 or columns * rows > MOST_COPIES:
+        raise TrajectoryFileError(
+            name,
+            found["copies"][1],
+            f"'# copies:' are {columns:g} x {rows:g}; wanted whole numbers up to {MOST_COPIES}",
+        )
+    return Copies(int(columns), int(rows), step_x_mm, step_y_mm)
 
 
 def _left_out(name: str, found: Mapping[str, tuple[str, int]]) -> LeftOut:

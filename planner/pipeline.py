@@ -9,13 +9,12 @@ from itertools import chain, islice, pairwise
 
 import numpy as np
 
-from planner.affine import compose, rotation
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arrays import BoolArray, FloatArray
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
-from planner.drawing.flatten import extent, flatten_all
+from planner.drawing.flatten import flatten_all
 from planner.drawing.join import join_strokes
 from planner.drawing.metric import Metric
 from planner.drawing.order import ordered
@@ -31,7 +30,7 @@ from planner.execution.work_chunks import (
     travel_chunks,
 )
 from planner.execution.workers import ALONE, ChunkExecutor, Workers, executor_of
-from planner.head import LeftOut, Placement
+from planner.head import LeftOut
 from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
 from planner.kinematics.limits import Limits
 from planner.motion.speed_limit import pen_speed_mm_s
@@ -39,8 +38,8 @@ from planner.motion.timed_stroke import TimedStroke
 from planner.motion.tolerance import FLATTEN_SHARE, JOIN_SHARE
 from planner.phases import phases_of
 from planner.placement.clip import clip_strokes
-from planner.placement.fit import fit_to_canvas
 from planner.placement.pieces import Piece
+from planner.placement.place import Placed, placed
 from planner.placement.split import split_strokes
 from planner.progress import Report
 from planner.redundancy.arm_model import ArmModel
@@ -88,9 +87,9 @@ def plan(
         drawing = read_drawing(drawing_file, partial(report, "reading"))
         report("placing", 0, 1)
         canvas = canvas_of(model, settings.canvas, lift_mm)
-        svg_to_arm, placement, scale, size_mm = _placed(drawing, canvas, settings)
+        place = placed(drawing, canvas, settings)
         report("joining", 0, 1)
-        strokes, left_out, warnings = _strokes(drawing, svg_to_arm, model, settings)
+        strokes, left_out, warnings = _strokes(place, model, settings)
         report("ordering strokes", 0, 1)
         strokes, order_notes = _ordered(strokes, model, canvas)
         _require_bounded(strokes, arm, settings, lift_mm)
@@ -100,9 +99,9 @@ def plan(
         )
     warnings += order_notes + notes + more_notes
     left_out += lost + more_lost
-    trajectory = _assembled(arm, drawing_file, settings, svg_to_arm, placement, left_out, timed, moves)
+    trajectory = _assembled(arm, drawing_file, settings, place, left_out, timed, moves)
     _verify(trajectory, arm)
-    return Plan(trajectory, _summary(trajectory, model, timed, scale, size_mm, warnings), drawing)
+    return Plan(trajectory, _summary(trajectory, model, timed, place, warnings), drawing)
 
 
 def placed_strokes(
@@ -113,8 +112,7 @@ def placed_strokes(
     lift_mm = _lift_mm(model.arm, settings)
     drawing = read_drawing(drawing_file)
     canvas = canvas_of(model, settings.canvas, lift_mm)
-    svg_to_arm, _, _, _ = _placed(drawing, canvas, settings)
-    strokes, _, warnings = _strokes(drawing, svg_to_arm, model, settings)
+    strokes, _, warnings = _strokes(placed(drawing, canvas, settings), model, settings)
     strokes, notes = _ordered(strokes, model, canvas)
     return strokes, warnings + notes
 
@@ -158,37 +156,15 @@ def _worth_hiring(workers: Workers, drawing_file: DrawingSource) -> Workers:
     return ALONE if n_bytes < _SMALL_BYTES and workers.cluster is None else workers
 
 
-def _placed(
-    drawing: Drawing, canvas: Canvas, settings: PlanSettings
-) -> tuple[FloatArray, Placement, float, tuple[float, float]]:
-    """The affine from SVG user units to arm millimetres, what is told of it, its scale against the page, and the size
-    on paper."""
-    turned = compose(rotation(settings.rotate_deg), drawing.user_to_page)
-    low, high = extent(drawing.outlines, turned)
-    onto_arm = fit_to_canvas(
-        low, high, canvas, margin_mm=settings.margin_mm, scale=settings.fit, may_exceed=settings.skip_unreachable
-    )
-    scale = float(np.hypot(*onto_arm[:, 0]))
-    width, height = scale * (high - low)
-    # A drawing that keeps its size and may be cut is held within no rectangle.
-    is_held = settings.fit or not settings.skip_unreachable
-    sides = (canvas.near_mm, canvas.far_mm, canvas.right_mm, canvas.left_mm)
-    placement = Placement(
-        sides if is_held else None, settings.margin_mm if is_held else None, scale, settings.rotate_deg
-    )
-    return compose(onto_arm, turned), placement, scale, (float(width), float(height))
-
-
-def _strokes(
-    drawing: Drawing, svg_to_arm: FloatArray, model: ArmModel, settings: PlanSettings
-) -> tuple[list[FloatArray], LeftOut, list[str]]:
+def _strokes(place: Placed, model: ArmModel, settings: PlanSettings) -> tuple[list[FloatArray], LeftOut, list[str]]:
     """Strokes (n, 2), arm mm, what was left out as out of reach, and what is to be said of them."""
     warnings = []
     left_out = LeftOut()
+    drawing = place.drawing
     if drawing.skipped:
         counts = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
         warnings.append(f"not drawn as in the SVG: {counts}")
-    strokes = flatten_all(drawing.outlines, svg_to_arm, FLATTEN_SHARE * settings.tolerance_mm)
+    strokes = flatten_all(drawing.outlines, place.svg_to_arm, FLATTEN_SHARE * settings.tolerance_mm)
     strokes = join_strokes(strokes, JOIN_SHARE * settings.tolerance_mm)
     branches = model.branches(settings.weights)
     if settings.skip_unreachable:
@@ -364,8 +340,7 @@ def _assembled(
     arm: Arm,
     drawing_file: DrawingSource,
     settings: PlanSettings,
-    svg_to_arm: FloatArray,
-    placement: Placement,
+    place: Placed,
     left_out: LeftOut,
     timed: Sequence[TimedStroke],
     moves: Sequence[TravelMove],
@@ -389,7 +364,7 @@ def _assembled(
             strokes[begin:end] = index
             positions[begin:resting] = arm.to_file_units(stroke.joints[:1])
             positions[resting:end] = arm.to_file_units(stroke.joints)
-    (a, c, e), (b, d, f) = svg_to_arm.tolist()
+    (a, c, e), (b, d, f) = place.svg_to_arm.tolist()
     return Trajectory(
         arm=settings.arm,
         drawing=drawing_file.name,
@@ -400,7 +375,7 @@ def _assembled(
         pen=strokes != TRAVELLING,
         stroke=strokes,
         svg_to_arm_mm=(a, b, c, d, e, f),
-        placement=placement,
+        placement=place.told,
         left_out=left_out,
         paper=arm.paper,
     )
@@ -432,8 +407,7 @@ def _summary(
     trajectory: Trajectory,
     model: ArmModel,
     timed: Sequence[TimedStroke],
-    scale: float,
-    size_mm: tuple[float, float],
+    place: Placed,
     warnings: list[str],
 ) -> PlanSummary:
     arm = model.arm
@@ -446,11 +420,13 @@ def _summary(
         travelled_mm=float(
             sum(np.hypot(*(after.first.tip_mm - before.last.tip_mm)) for before, after in pairwise(timed))
         ),
-        size_mm=size_mm,
-        scale=scale,
+        size_mm=place.size_mm,
+        scale=place.scale,
         phases=phases,
         duration_s=trajectory.duration_s,
         n_samples=trajectory.n_samples,
         rate_hz=trajectory.rate_hz,
         warnings=warnings,
+        where=place.board.where(),
+        hints=place.notes,
     )

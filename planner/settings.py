@@ -8,6 +8,7 @@ from math import inf
 
 from planner.checked import number_in, one_of
 from planner.errors import UsageError
+from planner.paper_size import Orientation, PaperSize
 
 MIN_RATE_HZ, MAX_RATE_HZ = 50.0, 10_000.0
 """Below 50 samples a second the straight lines that controllers draw between samples leave the paper's tolerance."""
@@ -29,6 +30,37 @@ class CanvasKind(StrEnum):
     DOCUMENTED = "documented"
     OPTIMAL = "optimal"
     USABLE = "usable"
+
+
+class PlaceKind(StrEnum):
+    """What of a drawing is fitted, aligned or put somewhere: its page, or the extent of its ink."""
+
+    PAGE = "page"
+    INK = "ink"
+
+
+class Anchor(StrEnum):
+    """A corner, the middle of a side, or the middle, as somebody sees it who stands behind the arm."""
+
+    TOP_LEFT = "top-left"
+    TOP = "top"
+    TOP_RIGHT = "top-right"
+    LEFT = "left"
+    CENTRE = "centre"
+    RIGHT = "right"
+    BOTTOM_LEFT = "bottom-left"
+    BOTTOM = "bottom"
+    BOTTOM_RIGHT = "bottom-right"
+
+    @property
+    def fractions(self) -> tuple[float, float]:
+        """Of the width from the left, and of the height from the top."""
+        across = 0.0 if "left" in self.value else 1.0 if "right" in self.value else 0.5
+        down = 0.0 if "top" in self.value else 1.0 if "bottom" in self.value else 0.5
+        return across, down
+
+
+MOST_COPIES = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +106,18 @@ class PlanSettings:
         dwell_s: Rest on the paper after lowering.
         lift_mm: Travel height, None for the arm's own.
         canvas: The rectangle of the paper that is drawn on.
-        fit: Whether the drawing is scaled to the canvas, or keeps its true size.
-        margin_mm: Kept free along the edges of the canvas.
+        place: What of the drawing is placed: its page, where it has one, or its ink.
+        fit: Whether that is scaled to the canvas or the paper, or keeps its true size. None: it is, unless `scale` or
+            `at_mm` say otherwise.
+        scale: How large it becomes against its true size.
+        paper: The sheet that there is, with its middle on the middle of the canvas; None: all of the canvas.
+        orientation: Which way the sheet lies.
+        align: Where it goes in what room there is.
+        at_mm: Where its `origin` goes instead, mm to the right and down from the top left corner of the paper.
+        origin: Which point of it goes there.
+        copies: How many, in columns and rows, with a margin between.
+        mirror: Left and right change places before it is turned.
+        margin_mm: Kept free along the edges of the canvas or the paper.
         rotate_deg: How far the drawing is turned before it is placed.
         skip_unreachable: Leave out what the arm cannot reach, and say so, instead of failing.
         weights: What method `path` spends the arm's redundancy on, None for the arm's own.
@@ -90,7 +132,16 @@ class PlanSettings:
     dwell_s: float = 0.0
     lift_mm: float | None = None
     canvas: CanvasKind = CanvasKind.USABLE
-    fit: bool = True
+    place: PlaceKind = PlaceKind.PAGE
+    fit: bool | None = None
+    scale: float | None = None
+    paper: PaperSize | None = None
+    orientation: Orientation = Orientation.AUTO
+    align: Anchor = Anchor.CENTRE
+    at_mm: tuple[float, float] | None = None
+    origin: Anchor = Anchor.TOP_LEFT
+    copies: tuple[int, int] = (1, 1)
+    mirror: bool = False
     margin_mm: float = 5.0
     rotate_deg: float = 0.0
     skip_unreachable: bool = False
@@ -105,18 +156,51 @@ class PlanSettings:
             "dwell_s": number_in("dwell_s", self.dwell_s, zero=True),
             "lift_mm": None if self.lift_mm is None else number_in("lift_mm", self.lift_mm),
             "margin_mm": number_in("margin_mm", self.margin_mm, zero=True),
+            "scale": None if self.scale is None else number_in("scale", self.scale),
             "rotate_deg": number_in("rotate_deg", self.rotate_deg, zero=True, minimum=-inf),
         }
         choices = {
             "method": one_of("method", self.method, Method),
             "canvas": one_of("canvas", self.canvas, CanvasKind),
+            "place": one_of("place", self.place, PlaceKind),
+            "orientation": one_of("orientation", self.orientation, Orientation),
+            "align": one_of("align", self.align, Anchor),
+            "origin": one_of("origin", self.origin, Anchor),
         }
         for name, value in {**numbers, **choices}.items():
             object.__setattr__(self, name, value)
-        for name in ("fit", "skip_unreachable"):
-            if not isinstance(getattr(self, name), bool):
+        for name in ("fit", "mirror", "skip_unreachable"):
+            if not isinstance(getattr(self, name), bool) and not (name == "fit" and self.fit is None):
                 raise UsageError(f"{name} is True or False, not {getattr(self, name)!r:.40}")
+        self._check_placement()
         if not isinstance(self.arm, str):
             raise UsageError(f"arm is the name of an arm or of its .toml file, not {self.arm!r:.40}")
         if not isinstance(self.weights, ConfigurationWeights | None):
             raise UsageError(f"weights is a ConfigurationWeights, not {self.weights!r:.40}")
+
+    @property
+    def is_fitted(self) -> bool:
+        """Whether the drawing is scaled to what room there is."""
+        return self.scale is None and self.at_mm is None if self.fit is None else self.fit
+
+    def _check_placement(self) -> None:
+        if self.fit and (self.scale is not None or self.at_mm is not None):
+            other = "scale" if self.scale is not None else "at"
+            raise UsageError(f"fit and {other} contradict each other: a drawing that fills its room has neither choice")
+        if self.at_mm is not None:
+            if self.align is not Anchor.CENTRE:
+                raise UsageError("at and align contradict each other: either one says where the drawing goes")
+            x, y = self.at_mm
+            place = number_in("at", x, zero=True, minimum=-inf), number_in("at", y, zero=True, minimum=-inf)
+            object.__setattr__(self, "at_mm", place)
+        elif self.origin is not Anchor.TOP_LEFT:
+            raise UsageError("origin says which point of the drawing goes to at, and there is no at")
+        if self.orientation is not Orientation.AUTO and self.paper is None:
+            raise UsageError("orientation says which way the paper lies, and there is no paper")
+        if not isinstance(self.paper, PaperSize | None):
+            raise UsageError(f"paper is a PaperSize, not {self.paper!r:.40}")
+        columns, rows = self.copies
+        if not (isinstance(columns, int) and isinstance(rows, int) and columns >= 1 and rows >= 1):
+            raise UsageError(f"copies are columns and rows, one of each at least, not {self.copies!r:.40}")
+        if columns * rows > MOST_COPIES:
+            raise UsageError(f"{columns} x {rows} copies are more than {MOST_COPIES}")

@@ -12,6 +12,7 @@ import numpy as np
 
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import BoolArray, ByteArray, FloatArray, IntArray
+from planner.drawing.drawing import Drawing
 from planner.errors import TrajectoryFileError, UsageError
 from planner.files import written_aside
 from planner.head import (
@@ -93,6 +94,13 @@ class Trajectory:
             raise UsageError("a data frame needs pandas: pip install 'drawing-arm-planner[frame]'") from None
         joints = dict(zip(self.columns, self.positions.T, strict=True))
         return pandas.DataFrame({"t_s": self.times_s, **joints, "pen": self.pen.astype(int), "stroke": self.stroke})
+
+    def all_of(self, drawing: Drawing) -> Drawing:
+        """The drawing as often as the header tells that it was drawn."""
+        if self.placement.copies is None:
+            return drawing
+        a, b, c, d, e, f = self.svg_to_arm_mm
+        return self.placement.copies.of(drawing, np.array([[a, c, e], [b, d, f]]))
 
     def line(self, sample: int) -> int:
         """Line of a sample in its file, counted from 1."""

@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 from typing import TypedDict
 
 from planner.errors import UnknownOption, UsageError
+from planner.paper_size import PaperSize, paper_size
 from planner.settings import ConfigurationWeights, PlanSettings
 
 
@@ -22,7 +23,16 @@ class PlanOptions(TypedDict, total=False):
     dwell_s: float
     lift_mm: float | None
     canvas: str
-    fit: bool
+    place: str
+    fit: bool | None
+    scale: float | None
+    paper: PaperSize | str | None
+    orientation: str
+    align: str
+    at_mm: tuple[float, float] | None
+    origin: str
+    copies: tuple[int, int]
+    mirror: bool
     margin_mm: float
     rotate_deg: float
     skip_unreachable: bool
@@ -42,6 +52,8 @@ def settings_with(settings: PlanSettings | None, arm: str | None, options: PlanO
     if isinstance(weights, Mapping):
         require_known(weights, [field.name for field in fields(ConfigurationWeights)])
         changes["weights"] = ConfigurationWeights(**weights)
+    if isinstance(paper := changes.get("paper"), str):
+        changes["paper"] = paper_size(paper)
     return replace(settings or PlanSettings(), **changes)  # type: ignore[arg-type]  # they check themselves
 
 

@@ -66,7 +66,7 @@ def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: Floa
     if trouble:
         raise UsageError(f"svg_to_arm_mm of the trajectory {trouble}")
     distance = np.zeros(trajectory.n_samples)
-    wanted = _dense(flatten_all(drawing.outlines, user_to_arm(trajectory), FLATTENING_MM))
+    wanted = _dense(flatten_all(trajectory.all_of(drawing).outlines, user_to_arm(trajectory), FLATTENING_MM))
     distance[trajectory.pen] = wanted.distance_mm(tip_mm[trajectory.pen, :2])
     return distance
 

@@ -13,16 +13,30 @@ from planner.cli.parser import Parser
 from planner.cli.quantities import (
     angle_deg,
     configuration_weights,
+    coordinate_mm,
+    grid,
     length_mm,
     number,
+    paper,
+    scale,
     speed_mm_s,
 )
 from planner.cli.report import check_report, write_report_of
 from planner.cli.terminal import print_summary, print_warnings, progress
 from planner.cli.workers import add_workers_option
 from planner.files import STANDARD
+from planner.paper_size import Orientation
 from planner.progress import of_all_stages
-from planner.settings import MAX_RATE_HZ, MIN_RATE_HZ, MIN_TOLERANCE_MM, CanvasKind, Method, PlanSettings
+from planner.settings import (
+    MAX_RATE_HZ,
+    MIN_RATE_HZ,
+    MIN_TOLERANCE_MM,
+    Anchor,
+    CanvasKind,
+    Method,
+    PlaceKind,
+    PlanSettings,
+)
 
 _DESCRIPTION = """\
 Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a trajectory of joint positions.
@@ -51,6 +65,8 @@ examples:
   plan city.svg --workers 4                        with four processes; the result does not depend on them
   plan flower.svg --weights time=3,reversals=0     configurations for speed rather than for servos with backlash
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
+  plan flower.svg --paper a6 --align top-left      at the top left of a sheet
+  plan stamp.svg --at 20 15 --copies 3x2           six of them at true size, the first 20 mm right and 15 mm down
 
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
 
@@ -103,7 +119,16 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
         dwell_s=options.dwell,
         lift_mm=options.lift,
         canvas=CanvasKind(options.canvas),
+        place=PlaceKind(options.place),
         fit=options.fit,
+        scale=options.scale,
+        paper=options.paper,
+        orientation=Orientation(options.orientation),
+        align=Anchor(options.align),
+        at_mm=tuple(options.at) if options.at else None,
+        origin=Anchor(options.origin),
+        copies=options.copies,
+        mirror=options.mirror,
         margin_mm=options.margin,
         rotate_deg=options.rotate,
         skip_unreachable=options.skip_unreachable,
@@ -215,7 +240,13 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         help="rest on the paper after lowering (default: %(default)g s)",
     )
 
-    placement = parser.add_argument_group("placement")
+    add_placement_options(parser.add_argument_group("placement"))
+
+
+def add_placement_options(placement: argparse._ArgumentGroup) -> None:
+    """The options that say where a drawing goes."""
+    default = PlanSettings()
+    anchors = [anchor.value for anchor in Anchor]
     placement.add_argument(
         "--canvas",
         choices=[kind.value for kind in CanvasKind],
@@ -223,17 +254,65 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         help="the rectangle of the paper to draw on (default: %(default)s)",
     )
     placement.add_argument(
+        "--place",
+        choices=[kind.value for kind in PlaceKind],
+        default=default.place.value,
+        help="what is placed: the drawing's page, ink wherever it is on it, so that drawings of one page land in"
+        " register; or the extent of its ink, as for drawings without a page (default: %(default)s)",
+    )
+    placement.add_argument(
         "--fit",
         action=argparse.BooleanOptionalAction,
         default=default.fit,
-        help="scale the drawing to the canvas, or keep its true size (default: --fit)",
+        help="scale it to the room that there is, or keep its true size (default: --fit)",
+    )
+    placement.add_argument("--scale", type=scale, metavar="F", help="scale its true size by so much: 0.5, 50%%")
+    placement.add_argument(
+        "--paper",
+        type=paper,
+        metavar="SIZE",
+        help="the sheet, amid the canvas: a0 to a10, letter, legal, 100x150, 4x6in",
+    )
+    placement.add_argument(
+        "--orientation",
+        choices=[kind.value for kind in Orientation],
+        default=default.orientation.value,
+        help="which way the paper lies (default: as the drawing)",
+    )
+    placement.add_argument(
+        "--align",
+        choices=anchors,
+        default=default.align.value,
+        metavar="WHERE",
+        help=f"where it goes in what room there is: {', '.join(anchors)} (default: %(default)s)",
+    )
+    placement.add_argument(
+        "--at",
+        type=coordinate_mm,
+        nargs=2,
+        metavar=("X", "Y"),
+        help="where it goes at its true size instead: to the right and down from the paper's top left corner",
+    )
+    placement.add_argument(
+        "--origin",
+        choices=anchors,
+        default=default.origin.value,
+        metavar="WHERE",
+        help="which point of it goes to --at (default: %(default)s)",
+    )
+    placement.add_argument(
+        "--copies",
+        type=grid,
+        default=default.copies,
+        metavar="NxM",
+        help="columns and rows of copies, a margin between",
     )
     placement.add_argument(
         "--margin",
         type=length_mm(zero=True),
         default=default.margin_mm,
         metavar="LENGTH",
-        help="kept free along the edges of the canvas (default: %(default)g mm)",
+        help="kept free along the edges of canvas and paper (default: %(default)g mm)",
     )
     placement.add_argument(
         "--rotate",
@@ -242,6 +321,7 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         metavar="DEGREES",
         help="turn the drawing before placing it (default: %(default)g)",
     )
+    placement.add_argument("--mirror", action="store_true", help="exchange left and right before turning it")
     placement.add_argument(
         "--skip-unreachable",
         action="store_true",

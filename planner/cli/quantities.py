@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable
 
 from planner.errors import UsageError
+from planner.paper_size import PaperSize, paper_size
 from planner.settings import ConfigurationWeights
 
 MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4, "px": 25.4 / 96}
@@ -63,6 +64,28 @@ def configuration_weights(text: str) -> ConfigurationWeights:
 def angle_deg(text: str) -> float:
     """Any finite angle in degrees."""
     return _finite(text, text)
+
+
+def paper(text: str) -> PaperSize:
+    """Paper such as `a5`, `letter` or `100x150mm`."""
+    try:
+        return paper_size(text)
+    except UsageError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def scale(text: str) -> float:
+    """A factor such as `0.5` or `50%`."""
+    share = text.strip().removesuffix("%")
+    return _in_range(_finite(share, text), text) / (100.0 if share != text.strip() else 1.0)
+
+
+def grid(text: str) -> tuple[int, int]:
+    """Columns and rows such as `2x3`."""
+    match = re.fullmatch(r"\s*(\d{1,6})\s*[x×]\s*(\d{1,6})\s*", text, re.ASCII)
+    if match is None:
+        raise argparse.ArgumentTypeError(f"'{text}' is not COLUMNSxROWS, such as 2x3")
+    return int(match[1]), int(match[2])
 
 
 def _finite(digits: str, text: str) -> float:

@@ -28,7 +28,7 @@ class Drawing:
         element draw in (viewBox coordinates where it has one), transforms applied.
     user_to_page: (2, 3) affine [[a, c, e], [b, d, f]] from user units to millimetres on the page,
         x to the right and y down from the top left corner (viewBox and preserveAspectRatio applied).
-    page_mm: width and height of the page.
+    page_mm: width and height of the page. has_page: whether the file says so, rather than leaving it to who shows it.
     skipped: how many things of each kind could not be drawn, e.g. {"text": 2, "image": 1}.
     """
 
@@ -37,3 +37,4 @@ class Drawing:
     user_to_page: FloatArray
     page_mm: tuple[float, float]
     skipped: Mapping[str, int] = field(default_factory=dict)
+    has_page: bool = True

@@ -55,7 +55,8 @@ def read_drawing(svg: DrawingSource, report: Callable[[int, int], None] = lambda
     except ValueError as error:
         raise DrawingError(source, str(error)) from None
     report(_STEPS, _STEPS)
-    return Drawing(source, normalised.outlines, user_to_page, page_mm, skipped)
+    has_page = not {"width", "height", "viewBox"}.isdisjoint(found.root)
+    return Drawing(source, normalised.outlines, user_to_page, page_mm, skipped, has_page)
 
 
 def _page(root: Mapping[str, str], original: Mapping[str, str]) -> tuple[FloatArray, tuple[float, float]]:

@@ -74,7 +74,7 @@ def _wanted(trajectory: Trajectory, drawing: Drawing | None) -> tuple[FloatArray
     if drawing is None:
         return np.empty((0, 2)), np.empty((0, 2))
     a, b, c, d, e, f = trajectory.svg_to_arm_mm
-    strokes = flatten_all(drawing.outlines, np.array([[a, c, e], [b, d, f]]), _FLATTEN_TOLERANCE_MM)
+    strokes = flatten_all(trajectory.all_of(drawing).outlines, np.array([[a, c, e], [b, d, f]]), _FLATTEN_TOLERANCE_MM)
     gap = np.full((1, 2), np.nan)
     lines = [part for stroke in strokes if len(stroke) > 1 for part in (stroke, gap)]
     taps = [stroke for stroke in strokes if len(stroke) == 1]

@@ -263,7 +263,7 @@ def _making(planned: Planned) -> list[Markup]:
         ("rest before a stroke", f"{settings.dwell_s:g} s"),
         ("lift", f"{lift_mm:g} mm"),
         ("canvas", settings.canvas.value),
-        ("scaled to the canvas", _yes(settings.fit)),
+        ("scaled to the canvas", _yes(settings.is_fitted)),
         ("margin", f"{settings.margin_mm:g} mm"),
         ("turned by", f"{settings.rotate_deg:g}°"),
         ("out of reach left out", _yes(settings.skip_unreachable)),

@@ -1,0 +1,48 @@
+"""Copies of a drawing in rows and columns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from planner.arrays import FloatArray, frozen
+from planner.drawing.drawing import Drawing
+from planner.errors import DrawingError
+
+_CURVE_LIMIT = 2_500_000
+
+
+@dataclass(frozen=True, slots=True)
+class Copies:
+    """columns, rows: how many, the first at the top left. step_x_mm, step_y_mm: from one to the next, to the right and
+    down on the paper."""
+
+    columns: int
+    rows: int
+    step_x_mm: float
+    step_y_mm: float
+
+    @property
+    def count(self) -> int:
+        return self.columns * self.rows
+
+    def of(self, drawing: Drawing, svg_to_arm: FloatArray) -> Drawing:
+        """The drawing with all copies, row by row, for the map (2, 3) that places the first. Errors: DrawingError where
+        they are too many."""
+        if self.count == 1:
+            return drawing
+        if self.count * sum(len(outline.beziers) for outline in drawing.outlines) > _CURVE_LIMIT:
+            raise DrawingError(
+                drawing.source, f"its {self.count} copies have more than {_CURVE_LIMIT} lines and curves"
+            )
+        # To the right is -y of the arm, down is -x.
+        to_user = np.linalg.inv(svg_to_arm[:, :2])
+        right, down = to_user @ (0.0, -self.step_x_mm), to_user @ (-self.step_y_mm, 0.0)
+        outlines = tuple(
+            replace(outline, beziers=frozen(outline.beziers + (column * right + row * down)))
+            for row in range(self.rows)
+            for column in range(self.columns)
+            for outline in drawing.outlines
+        )
+        return replace(drawing, outlines=outlines)
