@@ -16,10 +16,10 @@ from planner.trajectory import write_trajectory
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A drawing and the file that its trajectory goes to."""
+    """A drawing and the file that its trajectory goes to, if to any."""
 
     drawing: Path
-    target: Path
+    target: Path | None
     settings: PlanSettings
 
 
@@ -35,13 +35,7 @@ class Outcome:
 def jobs_of(folder: Path, out_folder: Path, settings: PlanSettings) -> list[Job]:
     """A job for each SVG of a folder, by name; `out_folder` is made if it is missing. Errors: UsageError,
     OutputError."""
-    try:
-        drawings = sorted(path for path in folder.iterdir() if path.suffix.lower() == ".svg" and path.is_file())
-    except OSError as error:
-        raise UsageError(f"{folder} cannot be read as a folder: {error.strerror}") from error
-    if not drawings:
-        raise UsageError(f"there are no drawings (.svg) in {folder}")
-    jobs = [Job(drawing, out_folder / f"{drawing.stem}.csv", settings) for drawing in drawings]
+    jobs = [Job(drawing, out_folder / f"{drawing.stem}.csv", settings) for drawing in _drawings_of(folder)]
     targets = [job.target for job in jobs]
     for job in jobs:
         if targets.count(job.target) > 1:
@@ -51,6 +45,21 @@ def jobs_of(folder: Path, out_folder: Path, settings: PlanSettings) -> list[Job]
     except OSError as error:
         raise OutputError(str(out_folder), error.strerror or str(error)) from error
     return jobs
+
+
+def estimates_of(drawings: Path, settings: PlanSettings) -> list[Job]:
+    """A job without a file for a drawing, or for each of a folder. Errors: UsageError."""
+    return [Job(drawing, None, settings) for drawing in (_drawings_of(drawings) if drawings.is_dir() else [drawings])]
+
+
+def _drawings_of(folder: Path) -> list[Path]:
+    try:
+        drawings = sorted(path for path in folder.iterdir() if path.suffix.lower() == ".svg" and path.is_file())
+    except OSError as error:
+        raise UsageError(f"{folder} cannot be read as a folder: {error.strerror}") from error
+    if not drawings:
+        raise UsageError(f"there are no drawings (.svg) in {folder}")
+    return drawings
 
 
 def plan_all(jobs: Sequence[Job], workers: Workers) -> Iterator[Outcome]:
@@ -63,7 +72,8 @@ def plan_all(jobs: Sequence[Job], workers: Workers) -> Iterator[Outcome]:
 def _planned(job: Job) -> Outcome:
     try:
         result = plan(job.drawing, job.settings, _unheard)
-        write_trajectory(result.trajectory, job.target)
+        if job.target is not None:
+            write_trajectory(result.trajectory, job.target)
     except (PlannerError, MemoryError) as error:
         return Outcome(job, None, error)
     return Outcome(job, result.summary, None)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from planner.counted import counted
+_JOINT_LAWS = frozenset({"position", "velocity", "acceleration", "jerk"})
+_INK_LAWS = frozenset({"nothing extra", "nothing missing"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +58,11 @@ class Finding:
     is_note: bool = False
 
     @property
+    def share(self) -> float:
+        """How much of its limit is used; 0 where there are no figures."""
+        return self.worst / self.limit if self.worst is not None and self.limit else 0.0
+
+    @property
     def words(self) -> str:
         """The law, of which joint, and the figures: everything but whether it passed and where."""
         joint = "" if self.place is None or self.place.joint is None else f" of {self.place.joint}"
@@ -88,10 +94,24 @@ class CheckResult:
     def faults(self) -> tuple[Finding, ...]:
         return tuple(finding for finding in self.findings if not finding.passed)
 
+    def verdict(self) -> str:
+        """One line: whether it passed, and how near it comes to what it must not do."""
+        laws = [finding for finding in self.findings if not finding.is_note]
+        told = [f"{len(laws)} laws" if self.passed else f"{len(self.faults)} of {len(laws)} laws broken"]
+        limits = [(finding.share, finding) for finding in laws if finding.check.split()[0] in _JOINT_LAWS]
+        if limits:
+            share, nearest = max(limits, key=lambda one: one[0])
+            joint = nearest.place.joint if nearest.place else None
+            told.append(f"nearest to a limit: {nearest.check}{f' of {joint}' if joint else ''} {100 * share:.0f} %")
+        ink = [finding for finding in laws if finding.check in _INK_LAWS and finding.worst is not None]
+        if ink:
+            worst = max(ink, key=lambda finding: finding.share)
+            told.append(f"ink within {worst.worst:.3f} of {worst.limit:g} {worst.unit}")
+        return f"{'passed' if self.passed else 'FAILED'}: {'; '.join(told)}"
+
     def text(self) -> str:
-        """One line a finding and one for the sum, without a line end at the end."""
-        total = "passed" if self.passed else f"FAILED: {counted(len(self.faults), 'fault')}"
-        return "\n".join([*map(str, self.findings), total])
+        """The verdict, then one line a finding, without a line end at the end."""
+        return "\n".join([self.verdict(), *map(str, self.findings)])
 
     def __str__(self) -> str:
         return self.text()

@@ -65,6 +65,14 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.batch import batch
 
             return batch(rest)
+        case "estimate":
+            from planner.cli.batch import estimate
+
+            return estimate(rest)
+        case "config":
+            from planner.cli.config import config
+
+            return config(rest)
         case "run":
             from planner.cli.run import run
 

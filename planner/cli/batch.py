@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,12 +10,13 @@ from typing import TYPE_CHECKING
 from planner.cli.files import output_file
 from planner.cli.interrupts import interrupts_remembered
 from planner.cli.parser import Parser
-from planner.cli.plan import add_plan_options, settings_of
+from planner.cli.plan import add_plan_options, preferred, settings_of
 from planner.cli.terminal import print_lines, print_note, print_warnings, progress
 from planner.counted import counted
+from planner.summary import clock
 
 if TYPE_CHECKING:
-    from planner.batch import Outcome
+    from planner.batch import Job, Outcome
 
 _DESCRIPTION = """\
 Plan every drawing (.svg) of a folder, each into a trajectory of its own name. Drawings are shared out among the
@@ -28,18 +30,33 @@ examples:
 
 exit codes: 0 all planned; else the highest code among the drawings: 2 unusable input; 3 cannot be planned"""
 
+_ESTIMATE_DESCRIPTION = """\
+Say how long each drawing of a folder takes to draw, and write nothing: they are planned as they would be, so that the
+times are those of the trajectories."""
+
+_ESTIMATE_EPILOG = """\
+examples:
+  plan estimate drawings
+  plan estimate flower.svg --arm scara --speed 4cm/s"""
+
 _NO_MEMORY_CODE = 2
 
 
 def batch(arguments: list[str]) -> int:
     """Plan all drawings of a folder. Errors: PlannerError where no drawing can be begun."""
-    options = _parser().parse_args(arguments)
+    options = preferred(_parser(), arguments)
     folder: Path = options.folder
     settings = settings_of(options)
 
-    from planner.batch import jobs_of, plan_all
+    from planner.batch import jobs_of
 
-    jobs = jobs_of(folder, options.output or folder, settings)
+    return _done(jobs_of(folder, options.output or folder, settings), options)
+
+
+def _done(jobs: Sequence[Job], options: argparse.Namespace) -> int:
+    """Do all jobs and tell what became of them; the exit code."""
+    from planner.batch import plan_all
+
     outcomes: list[Outcome] = []
     with progress(quiet=options.quiet) as show, interrupts_remembered() as raise_if_interrupted:
         show("drawings", 0, len(jobs))
@@ -56,6 +73,19 @@ def batch(arguments: list[str]) -> int:
     if not options.quiet:
         print_lines(_table(outcomes))
     return max(_exit_code(outcome) for outcome in outcomes)
+
+
+def estimate(arguments: list[str]) -> int:
+    """Tell how long drawings take. Errors: PlannerError where no drawing can be begun."""
+    parser = Parser("plan estimate", _ESTIMATE_DESCRIPTION, _ESTIMATE_EPILOG)
+    parser.add_argument("folder", type=output_file, metavar="FOLDER|DRAWING.svg")
+    add_plan_options(parser)
+    options = preferred(parser, arguments)
+    settings = settings_of(options)
+
+    from planner.batch import estimates_of
+
+    return _done(estimates_of(options.folder, settings), options)
 
 
 def _exit_code(outcome: Outcome) -> int:
@@ -75,10 +105,11 @@ def _table(outcomes: Sequence[Outcome]) -> list[str]:
         else:
             lines.append(
                 f"{name:<{width}}  {summary.n_strokes:>7}  {summary.drawn_mm / 1000:>7.2f}"
-                f"  {summary.duration_s:>7.1f}  {outcome.job.target}"
+                f"  {summary.duration_s:>7.1f}  {outcome.job.target or '-'}"
             )
     planned = sum(outcome.summary is not None for outcome in outcomes)
-    return [*lines, f"{planned} of {counted(len(outcomes), 'drawing')} planned"]
+    whole = clock(sum(outcome.summary.duration_s for outcome in outcomes if outcome.summary is not None))
+    return [*lines, f"{planned} of {counted(len(outcomes), 'drawing')} planned; they take {whole} in all"]
 
 
 def _parser() -> Parser:

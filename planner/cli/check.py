@@ -19,6 +19,7 @@ and, with --drawing, whether the pen draws that drawing, all of it and nothing e
 _EPILOG = """\
 examples:
   plan check traj.csv
+  plan check traj.csv --verbose
   plan check traj.csv --drawing flower.svg --tolerance 0.1mm
   plan check traj.csv --arm my_arm.toml --json result.json
 
@@ -43,7 +44,13 @@ def check(arguments: list[str]) -> int:
     parser.add_argument(
         "--json", type=output_file, metavar="FILE", help="write the check result there as well; - for standard output"
     )
-    parser.add_argument("--quiet", action="store_true", help="print the faults alone, and nothing where there is none")
+    loudness = parser.add_mutually_exclusive_group()
+    loudness.add_argument(
+        "--verbose", action="store_true", help="print every law with its worst figure and where it is"
+    )
+    loudness.add_argument(
+        "--quiet", action="store_true", help="print the faults alone, and nothing where there is none"
+    )
     options = parser.parse_args(arguments)
     sources = [options.trajectory] + ([options.drawing] if options.drawing else [])
     if options.json:
@@ -62,7 +69,7 @@ def check(arguments: list[str]) -> int:
     if options.json:
         with written_aside(options.json) as file:
             cast("IO[str]", file).write(json.dumps(check_result.as_dict(), indent=2) + "\n")
-    print_summary(
-        map(str, check_result.faults) if options.quiet else [check_result.text()], *filter(None, [options.json])
-    )
+    faults = [str(fault) for fault in check_result.faults]
+    told = [check_result.text()] if options.verbose else faults if options.quiet else [check_result.verdict(), *faults]
+    print_summary(told, *filter(None, [options.json]))
     return 0 if check_result.passed else EXIT_FAULT

@@ -10,6 +10,7 @@ from planner.cli.files import STANDARD_INPUT, input_file, output_file
 from planner.cli.interrupts import interrupts_remembered
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
+from planner.cli.preferences import preferences_for, with_preferences
 from planner.cli.quantities import (
     angle_deg,
     configuration_weights,
@@ -53,7 +54,9 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan plot traj.csv -o F   pictures of a trajectory
   plan compare DRAWING.svg  the same points by every method of inverse kinematics
   plan measure PHOTO        where the marks of a calibration sheet came
-  plan arm [NAME]           list the arms, or describe one"""
+  plan arm [NAME]           list the arms, or describe one
+  plan estimate FOLDER      how long each drawing takes, without writing anything
+  plan config               which options are in force, and where each is said"""
 
 _EPILOG = """\
 examples:
@@ -76,7 +79,7 @@ exit codes: 0 done; 1 a check found fault; 2 unusable input or usage; 3 cannot b
 
 def plan(arguments: list[str]) -> int:
     """Plan one drawing. Errors: PlannerError."""
-    options = _parser().parse_args(arguments)
+    options = preferred(plan_parser(), arguments)
     drawing: Path = options.drawing
     target: Path = options.output or (Path(STANDARD) if drawing == STANDARD_INPUT else Path(f"{drawing.stem}.csv"))
     check_target(target, drawing)
@@ -136,11 +139,19 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
     )
 
 
-def _parser() -> Parser:
+def preferred(parser: Parser, arguments: list[str]) -> argparse.Namespace:
+    """The options, with what people prefer where `arguments` say nothing. Errors: UsageError."""
+    said = parser.parse_args(arguments)
+    place: Path = said.drawing if "drawing" in said else said.folder
+    return with_preferences(parser, arguments, preferences_for(place), said.preset)[0]
+
+
+def plan_parser() -> Parser:
+    """The parser of the bare command."""
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
     parser.usage = (
         "plan DRAWING.svg [-o traj.csv] [options]\n"
-        "       plan batch|run|pattern|measure|calibrate|predict|jog|ports|check|plot|compare|arm ..."
+        "       plan batch|run|pattern|measure|calibrate|predict|jog|ports|check|plot|compare|arm|estimate|config ..."
     )
     parser.add_argument(
         "drawing", type=input_file, metavar="DRAWING.svg", help="the drawing, gzipped or not; - for standard input"
@@ -169,6 +180,7 @@ def _parser() -> Parser:
 def add_plan_options(parser: Parser) -> None:
     """The options that say how drawings are planned, whether one or many."""
     add_workers_option(parser)
+    parser.add_argument("--preset", metavar="NAME", help="options by a name of yours (see plan config --help)")
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary, only warnings and errors")
     parser.add_argument(
         "--method",
