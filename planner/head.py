@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import json
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import IO
 
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.counted import counted
 from planner.drawing.copies import Copies
 from planner.errors import TrajectoryFileError
+from planner.pens import GroupBy, colour_of, hex_of
 from planner.settings import MOST_COPIES
 
 FORMAT_VERSION = 1
 LONGEST_LINE = 1 << 16
+_PEN = re.compile(r"(#[0-9a-f]{6}) (\S+) (.+)")
 _LOWEST_RATE_HZ, _HIGHEST_RATE_HZ = 1e-3, 1e5  # times are written in microseconds
 
 
@@ -36,7 +41,30 @@ class Placement:
     copies: Copies | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """What of a drawing is drawn. layers: by name or number; None: all that are to be plotted. by, kinds: of these,
+    what is of one of these layers, colours or widths, as `kind_of` tells them; None: all."""
+
+    layers: tuple[str, ...] | None = None
+    by: GroupBy | None = None
+    kinds: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PenInk:
+    """A pen by what is seen of it. width_mm: 0 where it is not known."""
+
+    name: str
+    colour: tuple[int, int, int]
+    width_mm: float
+
+    def __str__(self) -> str:
+        return f"{hex_of(self.colour)} {_shortest(self.width_mm)} {self.name}"
+
+
 NOTHING_TOLD = Placement()
+ALL = Chosen()
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +97,9 @@ class Head:
     placement: Placement
     left_out: LeftOut
     paper: PaperPose
+    pens: tuple[PenInk, ...] = ()
+    pen_changes: tuple[int, ...] = ()
+    chosen: Chosen = ALL
 
     def text(self) -> str:
         """The comment lines."""
@@ -108,6 +139,13 @@ class Head:
         if (copies := placement.copies) is not None:
             steps = f"{_shortest(copies.step_x_mm)} {_shortest(copies.step_y_mm)}"
             entries.append(("copies", f"{copies.columns} {copies.rows} {steps}"))
+        if self.chosen.layers is not None:
+            entries.append(("layers", json.dumps(self.chosen.layers, ensure_ascii=False)))
+        if self.chosen.by is not None:
+            entries.append((f"only_{self.chosen.by}", json.dumps(self.chosen.kinds, ensure_ascii=False)))
+        entries += [(f"pen_{index}", str(pen)) for index, pen in enumerate(self.pens)]
+        if self.pen_changes:
+            entries.append(("pen_changes", " ".join(map(str, self.pen_changes))))
         if self.left_out != NOTHING_LEFT_OUT:
             entries += [("left_out_mm", f"{self.left_out.length_mm:.6g}"), ("left_out_taps", str(self.left_out.taps))]
         return entries
@@ -166,6 +204,8 @@ def read_head(name: str, file: IO[str]) -> tuple[Head, str, int]:
         _placement(name, found),
         _left_out(name, found),
         paper,
+        *_pens(name, found),
+        _chosen(name, found),
     )
     return head, line, number
 
@@ -212,6 +252,50 @@ def _left_out(name: str, found: Mapping[str, tuple[str, int]]) -> LeftOut:
                 f"'# {key}:' is {value:g}; less than nothing, or a part of a tap, cannot be left out",
             )
     return LeftOut(length_mm, int(taps))
+
+
+def _pens(name: str, found: Mapping[str, tuple[str, int]]) -> tuple[tuple[PenInk, ...], tuple[int, ...]]:
+    """The pens, and the samples at which all but the first are put in."""
+    pens: list[PenInk] = []
+    while (key := f"pen_{len(pens)}") in found:
+        text, line = found[key]
+        match = _PEN.fullmatch(text)
+        if match is None or not is_number(match[2]):
+            raise TrajectoryFileError(name, line, f"'# {key}:' is '{shown(text)}'; wanted a colour, a width and a name")
+        pens.append(PenInk(match[3], colour_of(match[1]), float(match[2])))
+    changes: list[int] = []
+    if "pen_changes" in found:
+        text, line = found["pen_changes"]
+        cells = text.split()
+        if not all(cell.isdecimal() and len(cell) < 10 for cell in cells):
+            raise TrajectoryFileError(name, line, f"'# pen_changes:' is '{shown(text)}'; wanted numbers of samples")
+        changes = [int(cell) for cell in cells]
+        if any(later <= earlier for earlier, later in pairwise(changes)) or len(changes) != len(pens) - 1:
+            raise TrajectoryFileError(
+                name, line, f"'# pen_changes:' are {len(changes)} for {len(pens)} pens; wanted one less, in their order"
+            )
+    elif len(pens) > 1:
+        raise TrajectoryFileError(name, found["pen_1"][1], "has several pens and no '# pen_changes:' line")
+    return tuple(pens), tuple(changes)
+
+
+def _chosen(name: str, found: Mapping[str, tuple[str, int]]) -> Chosen:
+    layers = _names(name, found, "layers") if "layers" in found else None
+    for by in GroupBy:
+        if (key := f"only_{by}") in found:
+            return Chosen(layers, by, _names(name, found, key))
+    return Chosen(layers)
+
+
+def _names(name: str, found: Mapping[str, tuple[str, int]], key: str) -> tuple[str, ...]:
+    text, line = found[key]
+    try:
+        names = json.loads(text)
+    except ValueError:
+        names = None
+    if not isinstance(names, list) or not names or not all(isinstance(one, str) for one in names):
+        raise TrajectoryFileError(name, line, f"'# {key}:' is '{shown(text)}'; wanted a JSON list of names")
+    return tuple(names)
 
 
 def _numbers(name: str, found: Mapping[str, tuple[str, int]], key: str, count: int) -> list[float]:

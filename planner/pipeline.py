@@ -2,72 +2,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain, islice, pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
-from planner.arrays import BoolArray, FloatArray
-from planner.counted import counted
+from planner.arrays import FloatArray
+from planner.assembly import assembled, verify
 from planner.drawing.drawing import Drawing
-from planner.drawing.flatten import flatten_all
-from planner.drawing.join import join_strokes
-from planner.drawing.metric import Metric
-from planner.drawing.order import ordered
+from planner.drawing.pen_groups import chosen_layers, pen_groups
 from planner.drawing.source import DrawingSource, SvgInMemory
 from planner.drawing.svg import read_drawing
-from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
+from planner.errors import PlanError
 from planner.execution.context import PlanContext
-from planner.execution.work_chunks import (
-    pieces_of,
-    planned_travel_moves,
-    stroke_chunks,
-    timed_strokes,
-    travel_chunks,
-)
 from planner.execution.workers import ALONE, ChunkExecutor, Workers, executor_of
-from planner.head import LeftOut
-from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
-from planner.kinematics.limits import Limits
+from planner.head import Chosen, LeftOut
 from planner.motion.speed_limit import pen_speed_mm_s
 from planner.motion.timed_stroke import TimedStroke
-from planner.motion.tolerance import FLATTEN_SHARE, JOIN_SHARE
+from planner.pen_drawing import PenDrawing, lift_mm, require_bounded_whole
 from planner.phases import phases_of
-from planner.placement.clip import clip_strokes
-from planner.placement.pieces import Piece
 from planner.placement.place import Placed, placed
-from planner.placement.split import split_strokes
 from planner.progress import Report
 from planner.redundancy.arm_model import ArmModel
-from planner.redundancy.configuration_map import ConfigurationMap
-from planner.settings import Method, PlanSettings
+from planner.settings import PlanSettings
 from planner.stroke_figures import stroke_figures
 from planner.summary import PhaseTimes, PlanSummary
-from planner.timing.length_bound import require_bounded
 from planner.trajectory import TRAVELLING, Trajectory
-from planner.travel.travel_moves import TravelMove, TravelRules
-from planner.travel.travel_time_metric import travel_time_metric
-from planner.workspace.canvas import Canvas, canvas_of
+from planner.workspace.canvas import canvas_of
 
 _SMALL_BYTES = 60_000
 """Drawings in shorter files, of a few thousand points, are done sooner than worker processes have started."""
-_BLOCK_SAMPLES = 65_536
-_MANY_CHUNKS, _FORETELLING = 200, 8
-"""Work chunks from which on some are timed beforehand, and how many of them."""
-_TOO_MUCH = "draw less of it, or choose a lower --rate"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Plan:
-    """drawing: what was planned, as it was read."""
+    """drawing: what was planned, as it was read. by_pen: a trajectory for each pen, which draws what it draws."""
 
     trajectory: Trajectory
     summary: PlanSummary
     drawing: Drawing
+    by_pen: tuple[Trajectory, ...] = ()
 
 
 def plan(
@@ -82,26 +60,40 @@ def plan(
     report("reading", 0, 1)
     context = PlanContext.of(arm or load_arm(settings.arm), settings)
     model, arm = context.model, context.model.arm
-    lift_mm = _lift_mm(arm, settings)
+    lift_mm(arm, settings)  # said before the work begins
     with executor_of(_worth_hiring(workers, drawing_file), context.make_ready) as executor:
         drawing = read_drawing(drawing_file, partial(report, "reading"))
-        report("placing", 0, 1)
-        canvas = canvas_of(model, settings.canvas, lift_mm)
-        place = placed(drawing, canvas, settings)
-        report("joining", 0, 1)
-        strokes, left_out, warnings = _strokes(place, model, settings)
-        report("ordering strokes", 0, 1)
-        strokes, order_notes = _ordered(strokes, model, canvas)
-        _require_bounded(strokes, arm, settings, lift_mm)
-        timed, strokes, lost, notes = _timed_strokes(executor, context, strokes, report)
-        timed, strokes, moves, more_lost, more_notes = _with_travel_moves(
-            executor, context, timed, strokes, lift_mm, report
-        )
-    warnings += order_notes + notes + more_notes
-    left_out += lost + more_lost
-    trajectory = _assembled(arm, drawing_file, settings, place, left_out, timed, moves)
-    _verify(trajectory, arm)
-    return Plan(trajectory, _summary(trajectory, model, timed, place, warnings), drawing)
+        place, drawings = _ordered(drawing, context, report)
+        require_bounded_whole(drawings)
+        drawings = _through(executor, drawings, PenDrawing.move, "within the joint limits", report)
+        drawings = _through(executor, drawings, PenDrawing.travel, "with the arm's links apart", report)
+    samples = assembled(drawings)
+    left_out = sum((one.left_out for one in drawings), LeftOut())
+    (a, c, e), (b, d, f) = place.svg_to_arm.tolist()
+    trajectory = Trajectory(
+        arm=settings.arm,
+        drawing=drawing_file.name,
+        method=settings.method.value,
+        rate_hz=settings.rate_hz,
+        columns=arm.column_names,
+        positions=samples.positions,
+        pen=samples.stroke != TRAVELLING,
+        stroke=samples.stroke,
+        svg_to_arm_mm=(a, b, c, d, e, f),
+        placement=place.told,
+        left_out=left_out,
+        paper=arm.paper,
+        pens=samples.pens,
+        pen_changes=samples.pen_changes,
+        chosen=Chosen(settings.layers),
+    )
+    verify(trajectory, arm)
+    by = settings.pens_by
+    by_pen = tuple(
+        trajectory.part(first, last, pen, Chosen(settings.layers, by, kinds))
+        for pen, (first, last), kinds in zip(samples.pens, samples.parts, samples.kinds, strict=False)
+    )
+    return Plan(trajectory, _summary(trajectory, model, drawings, place), drawing, by_pen)
 
 
 def placed_strokes(
@@ -109,42 +101,77 @@ def placed_strokes(
 ) -> tuple[list[FloatArray], list[str]]:
     """Strokes (n, 2) in arm mm, placed and in the order that they are planned in, and what was left out on the way.
     Errors: PlannerError."""
-    lift_mm = _lift_mm(model.arm, settings)
-    drawing = read_drawing(drawing_file)
-    canvas = canvas_of(model, settings.canvas, lift_mm)
-    strokes, _, warnings = _strokes(placed(drawing, canvas, settings), model, settings)
-    strokes, notes = _ordered(strokes, model, canvas)
-    return strokes, warnings + notes
+    place, drawings = _ordered(read_drawing(drawing_file), PlanContext(model, settings), _unheard)
+    return list(chain.from_iterable(one.strokes for one in drawings)), _told(place.drawing, drawings)
 
 
-def _lift_mm(arm: Arm, settings: PlanSettings) -> float:
-    lift_mm = arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
-    if lift_mm < arm.pen.clearance_mm:
-        raise UsageError(f"a lift of {lift_mm:g} mm is below the arm's pen clearance of {arm.pen.clearance_mm:g} mm")
-    return lift_mm
+def _unheard(stage: str, done: int, total: int) -> None:
+    """Nobody waits."""
 
 
-def _ordered(strokes: Sequence[FloatArray], model: ArmModel, canvas: Canvas) -> tuple[list[FloatArray], list[str]]:
-    """The strokes in the order that they are drawn in, and what is to be said of it."""
-    start_mm, metric = canvas.to_arm_mm(np.zeros(2)), Metric(travel_time_metric(model), exponent=1 / 3)
-    strokes, is_finished = ordered(strokes, start_mm, metric)
-    note = f"a shorter way between the strokes may be left: {len(strokes)} are too many to search to the end"
-    return strokes, [] if is_finished else [note]
+def _ordered(drawing: Drawing, context: PlanContext, report: Report) -> tuple[Placed, list[PenDrawing]]:
+    """Where the drawing goes, and what each pen draws, in the order in which it does. Errors: PlannerError."""
+    model, settings = context.model, context.settings
+    report("placing", 0, 1)
+    canvas = canvas_of(model, settings.canvas, lift_mm(model.arm, settings))
+    place = placed(drawing, canvas, settings)
+    chosen = chosen_layers(place.drawing, settings.layers)
+    place = replace(place, drawing=chosen)
+    mm_per_unit = float(np.sqrt(abs(np.linalg.det(place.svg_to_arm[:, :2]))))
+    report("joining", 0, 1)
+    own_mm_s = pen_speed_mm_s(model.arm, settings)
+    drawings = []
+    start_mm = canvas.to_arm_mm(np.zeros(2))
+    for group in pen_groups(chosen, settings.pens_by, settings.pens, mm_per_unit):
+        of_pen = settings.with_pen(group.pen, own_mm_s, group.speed_share) if group.is_named else settings
+        one = PenDrawing(group, context if of_pen == settings else PlanContext(model, of_pen))
+        one.order(place.svg_to_arm, start_mm)
+        report("ordering strokes", 0, 1)
+        if one.strokes:
+            drawings.append(one)
+            start_mm = one.strokes[-1][-1]
+    if not drawings:
+        raise PlanError("nothing of the drawing is within reach")
+    return place, drawings
 
 
-def _require_bounded(strokes: Sequence[FloatArray], arm: Arm, settings: PlanSettings, lift_mm: float) -> None:
-    """Errors: UsageError where speeds and rests alone, whatever the arm, make a plan too long."""
-    drawn_mm = sum(float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in strokes)
-    lowered_mm = len(strokes) * arm.pen.clearance_mm + lift_mm
-    parts = [
-        (drawn_mm / pen_speed_mm_s(arm, settings), "drawing", "choose a higher --speed"),
-        (lowered_mm / settings.lowering_speed_mm_s, "lowering the pen", "choose a higher --lowering-speed"),
-        (len(strokes) * settings.dwell_s, "resting before strokes", "choose a shorter --dwell"),
-    ]
-    longest_s, what, advice = max(parts)
-    require_bounded(longest_s, settings.rate_hz, what, f"{advice}, or a lower --rate")
-    whole_s = sum(seconds for seconds, _, _ in parts)
-    require_bounded(whole_s, settings.rate_hz, "the plan", f"{advice}, or a lower --rate")
+def _through(
+    executor: ChunkExecutor,
+    drawings: Sequence[PenDrawing],
+    station: Callable[[PenDrawing, ChunkExecutor, Report, int], None],
+    how: str,
+    report: Report,
+) -> list[PenDrawing]:
+    """The pens whose drawings come through a station, one after the other. Errors: PlanError where none does."""
+    first = 0
+    total = sum(len(one.strokes) for one in drawings)
+    for one in drawings:
+        n_strokes, before = len(one.strokes), first
+
+        def told(stage: str, done: int, of: int, n_strokes: int = n_strokes, before: int = before) -> None:
+            report(stage, round(before + n_strokes * done / max(of, 1)), total)
+
+        station(one, executor, told if len(drawings) > 1 else report, first)
+        first += n_strokes
+    left = [one for one in drawings if one.strokes]
+    if not left:
+        raise PlanError(f"nothing of the drawing can be drawn {how}")
+    lost = [one for one in drawings if not one.strokes]
+    for one in lost:
+        left[0].left_out += one.left_out
+        left[0].notes += one.notes
+    return left
+
+
+def _told(drawing: Drawing, drawings: Sequence[PenDrawing]) -> list[str]:
+    """What is to be said of the drawing, and of what each pen draws of it."""
+    notes = []
+    if drawing.skipped:
+        counts = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
+        notes.append(f"not drawn as in the SVG: {counts}")
+    if len(drawings) == 1:
+        return notes + drawings[0].notes
+    return notes + [f"{one.group.pen.name}: {note}" for one in drawings for note in one.notes]
 
 
 def _worth_hiring(workers: Workers, drawing_file: DrawingSource) -> Workers:
@@ -156,261 +183,9 @@ def _worth_hiring(workers: Workers, drawing_file: DrawingSource) -> Workers:
     return ALONE if n_bytes < _SMALL_BYTES and workers.cluster is None else workers
 
 
-def _strokes(place: Placed, model: ArmModel, settings: PlanSettings) -> tuple[list[FloatArray], LeftOut, list[str]]:
-    """Strokes (n, 2), arm mm, what was left out as out of reach, and what is to be said of them."""
-    warnings = []
-    left_out = LeftOut()
-    drawing = place.drawing
-    if drawing.skipped:
-        counts = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
-        warnings.append(f"not drawn as in the SVG: {counts}")
-    strokes = flatten_all(drawing.outlines, place.svg_to_arm, FLATTEN_SHARE * settings.tolerance_mm)
-    strokes = join_strokes(strokes, JOIN_SHARE * settings.tolerance_mm)
-    branches = model.branches(settings.weights)
-    if settings.skip_unreachable:
-        n_taps = _drawn(strokes).taps
-        strokes, lost_mm, lost_whole = clip_strokes(
-            strokes, _in_reach(branches), max(float(branch.radii_mm[-1]) for branch in branches)
-        )
-        left_out = LeftOut(lost_mm, n_taps - _drawn(strokes).taps)
-        if lost_mm or lost_whole:
-            whole = counted(lost_whole - left_out.taps, "stroke") + " and " + counted(left_out.taps, "tap")
-            warnings.append(f"out of reach and left out: {lost_mm:.1f} mm of line; {whole} whole")
-        if not strokes:
-            raise PlanError("nothing of the drawing is within reach")
-    if len(branches) > 1 and settings.method is Method.PATH:
-        strokes, n_split, n_more = split_strokes(strokes, [branch.reaches for branch in branches])
-        if n_split:
-            warnings.append(
-                f"split, as no one branch reaches all of each: {counted(n_split, 'stroke')},"
-                f" with {counted(n_more, 'more pen lift')}"
-            )
-    return strokes, left_out, warnings
-
-
-def _drawn(strokes: Sequence[FloatArray]) -> LeftOut:
-    """How much strokes are: what is left out without them."""
-    lengths = [float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in strokes if len(stroke) > 1]
-    return LeftOut(sum(lengths), len(strokes) - len(lengths))
-
-
-def _in_reach(branches: Sequence[ConfigurationMap]) -> Callable[[FloatArray], BoolArray]:
-    def reachable(points_mm: FloatArray) -> BoolArray:
-        reached: BoolArray = np.any([branch.reaches(points_mm) for branch in branches], axis=0)
-        return reached
-
-    return reachable
-
-
-def _timed_strokes(
-    executor: ChunkExecutor, context: PlanContext, strokes: Sequence[FloatArray], report: Report
-) -> tuple[list[TimedStroke], list[FloatArray], LeftOut, list[str]]:
-    """Joint samples of all strokes that can be drawn, these strokes, and what is to be said of them; those that cannot
-    are left out if the user wants so."""
-    settings = context.settings
-    pieces = pieces_of(context, strokes)
-    together = list(chain.from_iterable(pieces))
-    report("drawing motions", 0, len(together))
-    _foretell(executor, context, together)
-    results = _results(executor, context, together, report)
-    n_samples = 0
-    timed: list[TimedStroke] = []
-    kept: list[FloatArray] = []
-    lost: list[FloatArray] = []
-    for index, stroke in enumerate(strokes):
-        made = list(islice(results, len(pieces[index])))
-        infeasible_paths = [result for result in made if isinstance(result, InfeasiblePath)]
-        if not infeasible_paths:
-            timed.append(TimedStroke.of([result for result in made if isinstance(result, TimedStroke)]))
-            kept.append(stroke)
-            n_samples += len(timed[-1].joints)
-            require_bounded(n_samples / settings.rate_hz, settings.rate_hz, "the drawing", _TOO_MUCH)
-        elif settings.skip_unreachable:
-            lost.append(stroke)
-        else:
-            first = infeasible_paths[0]
-            nearest = int(np.argmin(np.hypot(*(stroke - first.tip_mm).T)))
-            raise TargetOutOfReach(index, nearest, first.tip_mm, first.reason, first.joint, first.limit)
-    if not timed:
-        raise PlanError("nothing of the drawing can be drawn within the joint limits")
-    unconverged = sum(not stroke.converged for stroke in timed)
-    loose = sum(not stroke.held for stroke in timed)
-    counts = [
-        (len(lost), f"left out whole, as method {settings.method} cannot draw them"),
-        (unconverged, "timed by the fallback, slower than the least time"),
-        (loose, "off the drawing by more than the tolerance, however slow; try a larger --tolerance"),
-    ]
-    return timed, kept, _drawn(lost), [f"{what}: {counted(count, 'stroke')}" for count, what in counts if count]
-
-
-def _foretell(executor: ChunkExecutor, context: PlanContext, pieces: Sequence[Piece]) -> None:
-    """Time a few parts of a drawing that has very many, spread over all of it. Errors: UsageError where by these the
-    whole would take at least twice as long as a plan may: that is better said now than after hours."""
-    chunks = list(stroke_chunks(context, pieces))
-    if len(chunks) < _MANY_CHUNKS:
-        return
-    few = chunks[:: max(len(chunks) // _FORETELLING, 1)]
-    n_samples = sum(
-        len(result.joints)
-        for results in executor(timed_strokes, iter(few))
-        for result in results
-        if isinstance(result, TimedStroke)
-    )
-    rate_hz = context.settings.rate_hz
-    least_s = 0.5 * n_samples / rate_hz * len(chunks) / len(few)
-    require_bounded(least_s, rate_hz, "the drawing", _TOO_MUCH)
-
-
-def _results(
-    executor: ChunkExecutor, context: PlanContext, pieces: Sequence[Piece], report: Report
-) -> Iterator[TimedStroke | InfeasiblePath]:
-    """What became of each piece, as soon as it is known."""
-    done = 0
-    for results in executor(timed_strokes, stroke_chunks(context, pieces)):
-        done += len(results)
-        report("drawing motions", done, len(pieces))
-        yield from results
-
-
-def _with_travel_moves(
-    executor: ChunkExecutor,
-    context: PlanContext,
-    timed: list[TimedStroke],
-    strokes: list[FloatArray],
-    lift_mm: float,
-    report: Report,
-) -> tuple[list[TimedStroke], list[FloatArray], list[TravelMove], LeftOut, list[str]]:
-    """The strokes, the travel moves around them, and what is to be said of them. Strokes that the arm cannot get to, or
-    away from, with its links apart are left out if the user wants so."""
-    lost: list[FloatArray] = []
-    while True:
-        moves = _travel_moves(executor, context, timed, lift_mm, report)
-        blocked = {_end_that_collides(index, move, len(timed)) for index, move in enumerate(moves) if move.collision}
-        if not blocked:
-            loose = sum(not move.held for move in moves)
-            counts = [
-                (f"left out whole, as links would collide before or after them: {counted(len(lost), 'stroke')}", lost),
-                (
-                    "the lifted pen strays by more than the tolerance, however slow; try a larger --tolerance:"
-                    f" {counted(loose, 'pen-up move')}",
-                    loose,
-                ),
-            ]
-            return timed, strokes, moves, _drawn(lost), [note for note, count in counts if count]
-        if not context.settings.skip_unreachable:
-            index, collision = next((index, move.collision) for index, move in enumerate(moves) if move.collision)
-            raise LinksCollide(index, collision.links, collision.clearance_mm, str(collision))
-        lost += [strokes[index] for index in sorted(blocked)]
-        free = [index for index in range(len(timed)) if index not in blocked]
-        timed, strokes = [timed[index] for index in free], [strokes[index] for index in free]
-        if not timed:
-            raise PlanError("nothing of the drawing can be drawn with the arm's links apart")
-
-
-def _end_that_collides(index: int, move: TravelMove, n_strokes: int) -> int:
-    """The stroke, before or after the travel move of that index, that is nearer in time to where links collide."""
-    leaves = move.collision is not None and 2 * move.collision.configuration < len(move.joints)
-    return max(index - 1, 0) if leaves or index == n_strokes else index
-
-
-def _travel_moves(
-    executor: ChunkExecutor, context: PlanContext, timed: Sequence[TimedStroke], lift_mm: float, report: Report
-) -> list[TravelMove]:
-    """The pen-up moves before, between and after the strokes."""
-    arm, settings = context.model.arm, context.settings
-    rules = TravelRules(
-        arm.pen.clearance_mm, lift_mm, settings.lowering_speed_mm_s, settings.rate_hz, settings.tolerance_mm
-    )
-    starts = [None, *(stroke.last for stroke in timed)]
-    ends = [*(stroke.first for stroke in timed), None]
-    moves: list[TravelMove] = []
-    for made in executor(planned_travel_moves, travel_chunks(context, rules, starts, ends)):
-        for index, move in enumerate(made, len(moves)):
-            if not move.exact:
-                raise PlanError(
-                    f"the pen-up move before stroke {index} leaves the joint limits"
-                    f" of arm {arm.name}; try another --method, a smaller --lift or a larger --margin"
-                )
-        moves += made
-        report("travels", len(moves), len(starts))
-    return moves
-
-
-def _assembled(
-    arm: Arm,
-    drawing_file: DrawingSource,
-    settings: PlanSettings,
-    place: Placed,
-    left_out: LeftOut,
-    timed: Sequence[TimedStroke],
-    moves: Sequence[TravelMove],
-) -> Trajectory:
-    """All samples in order. Travel moves and strokes share the samples where they meet; these count as drawn."""
-    n_samples = (
-        sum(stroke.dwell_samples + len(stroke.joints) for stroke in timed)
-        + sum(len(move.joints) for move in moves)
-        - 2 * len(timed)
-    )
-    positions = np.empty((n_samples, len(arm.joints)))
-    strokes = np.full(n_samples, TRAVELLING)
-    end = 0
-    for index, move in enumerate(moves):
-        begin, end = end, end + len(move.joints) - (index > 0) - (index < len(timed))
-        first = 1 if index else 0
-        positions[begin:end] = arm.to_file_units(move.joints[first : first + end - begin])
-        if index < len(timed):
-            stroke = timed[index]
-            begin, resting, end = end, end + stroke.dwell_samples, end + stroke.dwell_samples + len(stroke.joints)
-            strokes[begin:end] = index
-            positions[begin:resting] = arm.to_file_units(stroke.joints[:1])
-            positions[resting:end] = arm.to_file_units(stroke.joints)
-    (a, c, e), (b, d, f) = place.svg_to_arm.tolist()
-    return Trajectory(
-        arm=settings.arm,
-        drawing=drawing_file.name,
-        method=settings.method.value,
-        rate_hz=settings.rate_hz,
-        columns=arm.column_names,
-        positions=positions,
-        pen=strokes != TRAVELLING,
-        stroke=strokes,
-        svg_to_arm_mm=(a, b, c, d, e, f),
-        placement=place.told,
-        left_out=left_out,
-        paper=arm.paper,
-    )
-
-
-def _verify(trajectory: Trajectory, arm: Arm) -> None:
-    """Every limit, once more, on the samples as they will be written."""
-    limits, period_s = Limits.of(arm), 1 / trajectory.rate_hz
-    rounding = arm.from_file_units(trajectory.rounding.max(axis=0))
-    slowing = max(  # blocks overlap by the three samples that a third difference looks back
-        limits.slowing_of(
-            arm.from_file_units(trajectory.positions[begin : begin + _BLOCK_SAMPLES + 3]), period_s, rounding
-        )
-        for begin in range(0, trajectory.n_samples, _BLOCK_SAMPLES)
-    )
-    if not np.isfinite(trajectory.positions).all():
-        raise PlanError(
-            "the trajectory has positions that are no finite numbers: a defect of the planner, please"
-            " report it with the drawing"
-        )
-    if slowing > 1 + 1e-6:
-        raise PlanError(
-            f"the timing exceeds a joint limit by {100 * (slowing - 1):.3f} % of speed:"
-            " a defect of the planner, please report it with the drawing"
-        )
-
-
-def _summary(
-    trajectory: Trajectory,
-    model: ArmModel,
-    timed: Sequence[TimedStroke],
-    place: Placed,
-    warnings: list[str],
-) -> PlanSummary:
+def _summary(trajectory: Trajectory, model: ArmModel, drawings: Sequence[PenDrawing], place: Placed) -> PlanSummary:
     arm = model.arm
+    timed: list[TimedStroke] = list(chain.from_iterable(one.timed for one in drawings))
     tips_mm = model.kinematics.tip_mm(arm.independent_of(arm.from_file_units(trajectory.positions)))
     phases = PhaseTimes.of(phases_of(trajectory, tips_mm, arm.pen.clearance_mm), trajectory.rate_hz)
     return PlanSummary(
@@ -426,7 +201,8 @@ def _summary(
         duration_s=trajectory.duration_s,
         n_samples=trajectory.n_samples,
         rate_hz=trajectory.rate_hz,
-        warnings=warnings,
+        warnings=_told(place.drawing, drawings),
         where=place.board.where(),
         hints=place.notes,
+        pens=tuple(pen.name for pen in trajectory.pens),
     )

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from math import inf
 
 from planner.checked import number_in, one_of
 from planner.errors import UsageError
 from planner.paper_size import Orientation, PaperSize
+from planner.pens import GroupBy, Pen
 
 MIN_RATE_HZ, MAX_RATE_HZ = 50.0, 10_000.0
 """Below 50 samples a second the straight lines that controllers draw between samples leave the paper's tolerance."""
@@ -119,6 +120,9 @@ class PlanSettings:
         mirror: Left and right change places before it is turned.
         margin_mm: Kept free along the edges of the canvas or the paper.
         rotate_deg: How far the drawing is turned before it is placed.
+        layers: Those that are drawn, by name or number; None: all but those that are not to be plotted.
+        by: What tells which pen draws a line; None: one pen draws all, or the nearest of the `pens` in colour.
+        pens: The pens that there are, in the order in which they draw.
         skip_unreachable: Leave out what the arm cannot reach, and say so, instead of failing.
         weights: What method `path` spends the arm's redundancy on, None for the arm's own.
     """
@@ -144,6 +148,9 @@ class PlanSettings:
     mirror: bool = False
     margin_mm: float = 5.0
     rotate_deg: float = 0.0
+    layers: tuple[str, ...] | None = None
+    by: GroupBy | None = None
+    pens: tuple[Pen, ...] = ()
     skip_unreachable: bool = False
     weights: ConfigurationWeights | None = None
 
@@ -167,6 +174,8 @@ class PlanSettings:
             "align": one_of("align", self.align, Anchor),
             "origin": one_of("origin", self.origin, Anchor),
         }
+        if self.by is not None:
+            choices["by"] = one_of("by", self.by, GroupBy)
         for name, value in {**numbers, **choices}.items():
             object.__setattr__(self, name, value)
         for name in ("fit", "mirror", "skip_unreachable"):
@@ -177,6 +186,25 @@ class PlanSettings:
             raise UsageError(f"arm is the name of an arm or of its .toml file, not {self.arm!r:.40}")
         if not isinstance(self.weights, ConfigurationWeights | None):
             raise UsageError(f"weights is a ConfigurationWeights, not {self.weights!r:.40}")
+
+    def with_pen(self, pen: Pen, speed_mm_s: float, speed_share: float) -> PlanSettings:
+        """The settings for what one pen draws, at that share of the speed that it has, or else of `speed_mm_s`."""
+        own_mm_s = pen.speed_mm_s if pen.speed_mm_s is not None else self.speed_mm_s
+        if speed_share != 1.0:
+            own_mm_s = speed_share * (speed_mm_s if own_mm_s is None else own_mm_s)
+        return replace(
+            self,
+            speed_mm_s=own_mm_s,
+            lift_mm=self.lift_mm if pen.lift_mm is None else pen.lift_mm,
+            lowering_speed_mm_s=pen.lowering_speed_mm_s or self.lowering_speed_mm_s,
+        )
+
+    @property
+    def pens_by(self) -> GroupBy | None:
+        """What tells which pen draws a line; None where one pen draws all."""
+        if self.by is not None or not self.pens:
+            return self.by
+        return GroupBy.LAYER if any(pen.layers for pen in self.pens) else GroupBy.COLOUR
 
     @property
     def is_fitted(self) -> bool:
@@ -199,6 +227,10 @@ class PlanSettings:
             raise UsageError("orientation says which way the paper lies, and there is no paper")
         if not isinstance(self.paper, PaperSize | None):
             raise UsageError(f"paper is a PaperSize, not {self.paper!r:.40}")
+        if self.layers is not None and not (self.layers and all(isinstance(layer, str) for layer in self.layers)):
+            raise UsageError(f"layers are names, one at least, not {self.layers!r:.40}")
+        if not all(isinstance(pen, Pen) for pen in self.pens):
+            raise UsageError(f"pens are values of Pen, not {self.pens!r:.40}")
         columns, rows = self.copies
         if not (isinstance(columns, int) and isinstance(rows, int) and columns >= 1 and rows >= 1):
             raise UsageError(f"copies are columns and rows, one of each at least, not {self.copies!r:.40}")

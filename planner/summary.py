@@ -53,7 +53,7 @@ class PhaseTimes:
 @dataclass(frozen=True, slots=True)
 class PlanSummary:
     """Results of one plan. scale: millimetres on paper for one on the SVG's page. drawn_mm: of the line between the
-    samples. where: to lay the paper, in words. hints: what might be asked for instead."""
+    samples. where: to lay the paper, in words. hints: what might be asked for instead. pens: in their order."""
 
     n_strokes: int
     n_taps: int
@@ -68,6 +68,7 @@ class PlanSummary:
     warnings: list[str] = field(default_factory=list)
     where: str = ""
     hints: tuple[str, ...] = ()
+    pens: tuple[str, ...] = ()
 
     @property
     def mean_speed_mm_s(self) -> float:
@@ -86,6 +87,7 @@ class PlanSummary:
             f"{self.size_mm[0]:.1f} x {self.size_mm[1]:.1f} mm on paper, {self.scale:.3g} times its size on the page",
             f"takes {clock(self.duration_s)} ({shares}); {self.mean_speed_mm_s:.0f} mm/s on paper in the mean",
             f"{counted(self.n_samples, 'sample')} at {self.rate_hz:g} Hz",
+            *([f"pens: {', '.join(self.pens)}"] if self.pens else []),
             *filter(None, [self.where]),
             *(f"hint: {hint}" for hint in self.hints),
         ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, cast
 
@@ -13,14 +13,18 @@ import numpy as np
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from planner.drawing.drawing import Drawing
+from planner.drawing.pen_groups import chosen_layers, only
 from planner.errors import TrajectoryFileError, UsageError
 from planner.files import written_aside
 from planner.head import (
+    ALL,
     LONGEST_LINE,
     NOTHING_LEFT_OUT,
     NOTHING_TOLD,
+    Chosen,
     Head,
     LeftOut,
+    PenInk,
     Placement,
     is_number,
     read_head,
@@ -58,6 +62,9 @@ class Trajectory:
             no such file: it is then the line that it would be written to.
         placement: What the header tells of where the drawing went.
         left_out: What was not drawn on purpose.
+        pens: Those that draw, in their order, where somebody speaks of pens.
+        pen_changes: The samples, at rest away from the paper, at which each pen but the first is put in.
+        chosen: What of the drawing was drawn.
         paper: Where the paper lies that arm millimetres are counted on, in the frame of the base.
     """
 
@@ -75,6 +82,9 @@ class Trajectory:
     placement: Placement = NOTHING_TOLD
     left_out: LeftOut = NOTHING_LEFT_OUT
     paper: PaperPose = BASE_PLANE
+    pens: tuple[PenInk, ...] = ()
+    pen_changes: tuple[int, ...] = ()
+    chosen: Chosen = ALL
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Trajectory:
@@ -96,11 +106,39 @@ class Trajectory:
         return pandas.DataFrame({"t_s": self.times_s, **joints, "pen": self.pen.astype(int), "stroke": self.stroke})
 
     def all_of(self, drawing: Drawing) -> Drawing:
-        """The drawing as often as the header tells that it was drawn."""
+        """What of the drawing the header tells that was drawn, as often as it was. Errors: UsageError for a layer that
+        is not there."""
+        a, b, c, d, e, f = self.svg_to_arm_mm
+        drawing = chosen_layers(drawing, self.chosen.layers)
+        if self.chosen.by is not None:
+            drawing = only(drawing, self.chosen.by, self.chosen.kinds, float(np.sqrt(abs(a * d - b * c))))
         if self.placement.copies is None:
             return drawing
-        a, b, c, d, e, f = self.svg_to_arm_mm
         return self.placement.copies.of(drawing, np.array([[a, c, e], [b, d, f]]))
+
+    def part(self, first: int, last: int, pen: PenInk, chosen: Chosen) -> Trajectory:
+        """Samples `first` to `last`, the arm at rest at both: what one pen draws of it, as a trajectory of its own."""
+        stroke = self.stroke[first : last + 1]
+        begins = int(stroke[stroke != TRAVELLING].min())
+        return replace(
+            self,
+            positions=self.positions[first : last + 1],
+            pen=self.pen[first : last + 1],
+            stroke=np.where(stroke == TRAVELLING, TRAVELLING, stroke - begins),
+            pens=(pen,),
+            pen_changes=(),
+            chosen=chosen,
+        )
+
+    @property
+    def pen_of_stroke(self) -> IntArray:
+        """(n_strokes,) which of the pens draws each stroke."""
+        n_strokes = int(self.stroke.max(initial=-1)) + 1
+        begins = np.full(n_strokes, self.n_samples)
+        drawn = np.flatnonzero(self.stroke != TRAVELLING)
+        begins[self.stroke[drawn][::-1]] = drawn[::-1]
+        which: IntArray = np.searchsorted(np.array(self.pen_changes, dtype=np.int64), begins, side="right")
+        return which
 
     def line(self, sample: int) -> int:
         """Line of a sample in its file, counted from 1."""
@@ -120,6 +158,9 @@ class Trajectory:
             self.placement,
             self.left_out,
             self.paper,
+            self.pens,
+            self.pen_changes,
+            self.chosen,
         )
 
     @property
@@ -211,6 +252,9 @@ def read_trajectory(source: Path) -> Trajectory:
         placement=head.placement,
         left_out=head.left_out,
         paper=head.paper,
+        pens=head.pens,
+        pen_changes=head.pen_changes,
+        chosen=head.chosen,
     )
 
 

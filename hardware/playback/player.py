@@ -36,15 +36,21 @@ def play(
     *,
     request: Callable[[], Request] = lambda: Request.GO,
     observers: Sequence[Observer] = (),
+    halts: Sequence[float] = (),
+    waiting: Callable[[int], bool] = lambda halt: False,
 ) -> PlaybackResult:
     """Play `program`: set point k at k / rate after the start, later only by pauses and stalls.
 
     `request()` is asked before every set point. On a pause the arm brakes along the path and lifts the pen straight up;
     then it lowers the pen where it was and goes on from there. On a stop it brakes, lifts and goes to the park pose. On
-    an emergency stop it holds where it is. If something other than the arm fails, such as an observer, the arm stops
-    before the error is raised. The driver is closed in any case. Errors: HardwareError, and those of observers.
+    an emergency stop it holds where it is. `halts` are samples of the trajectory, at rest away from the paper: the arm
+    holds there for as long as `waiting(index of the halt)` is true, which is asked for every set point.
+
+    If something other than the arm fails, such as an observer, the arm stops before the error is raised. The driver is
+    closed in any case. Errors: HardwareError, and those of observers.
     """
     playing = _Playing(program, arm, driver, clock, request, observers)
+    playing.hold_at(halts, waiting)
     try:
         driver.connect(program.park)
         playing.begin()
@@ -96,6 +102,16 @@ class _Playing:
         self._begin_s = self._start_s = 0.0
         self._late_s = array("d")
         self._stalls = 0
+        self._halts: dict[int, int] = {}
+        self._waiting: Callable[[int], bool] = lambda halt: False
+
+    def hold_at(self, halts: Sequence[float], waiting: Callable[[int], bool]) -> None:
+        """Those of the halts that the program comes to; each is held at once."""
+        sample, self._waiting = self._program.sample, waiting
+        for halt, at in enumerate(halts):
+            index = int(np.searchsorted(sample, at))
+            if sample[0] <= at and index < len(sample) - self._program.retreat:
+                self._halts[index] = halt
 
     def begin(self) -> None:
         """The driver is connected."""
@@ -107,6 +123,8 @@ class _Playing:
     def run(self) -> End:
         while self._next < len(self._program.positions):
             match self._request():
+                case Request.GO if self._next in self._halts:
+                    self._hold(self._halts.pop(self._next))
                 case Request.GO:
                     self._send(self._program.positions[self._next])
                     self._come_to(self._next)
@@ -158,6 +176,15 @@ class _Playing:
 
     def _parked(self) -> bool:
         return np.allclose(self._position, self._program.park, rtol=0.0, atol=_PARKED_WITHIN)
+
+    def _hold(self, halt: int) -> None:
+        """Rest until nobody is awaited any more, or somebody wants something else."""
+        self._rested()
+        while self._request() is Request.GO and self._waiting(halt):
+            self._send(self._position)
+            self.note_finished()
+            self._tell_progress(paused=True)
+        self._plan(self._program.sample[self._next :])
 
     def _pause(self) -> None:
         """Rest with the pen up until the request changes; if it is to go on, be back at full pace."""

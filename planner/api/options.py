@@ -8,6 +8,7 @@ from typing import TypedDict
 
 from planner.errors import UnknownOption, UsageError
 from planner.paper_size import PaperSize, paper_size
+from planner.pens import Pen
 from planner.settings import ConfigurationWeights, PlanSettings
 
 
@@ -35,6 +36,9 @@ class PlanOptions(TypedDict, total=False):
     mirror: bool
     margin_mm: float
     rotate_deg: float
+    layers: tuple[str, ...] | None
+    by: str | None
+    pens: tuple[Pen, ...]
     skip_unreachable: bool
     weights: ConfigurationWeights | Mapping[str, float] | None
 

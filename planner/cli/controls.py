@@ -27,10 +27,20 @@ class Controls:
     def __init__(self) -> None:
         self._request = Request.GO
         self._keyboard: int | None = None
+        self._awaits = False
 
     @property
     def has_keys(self) -> bool:
         return self._keyboard is not None
+
+    def await_key(self) -> None:
+        """The next key that pauses is an answer instead."""
+        self._awaits = True
+
+    def is_awaiting(self) -> bool:
+        """Whether it has not been pressed yet."""
+        self.request()
+        return self._awaits
 
     def request(self) -> Request:
         """Looks whether a key has been pressed, and never waits."""
@@ -51,6 +61,8 @@ class Controls:
                 self._demand(Request.EMERGENCY_STOP)
             elif key in _STOP:
                 self._demand(Request.STOP)
+            elif key in _PAUSE and self._awaits:
+                self._awaits = False
             elif key in _PAUSE:
                 self._demand(Request.GO if self._request is Request.PAUSE else Request.PAUSE)
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from planner import DISTRIBUTION, __version__
 from planner.cli.files import STANDARD_INPUT, input_file, output_file
@@ -17,16 +19,20 @@ from planner.cli.quantities import (
     coordinate_mm,
     grid,
     length_mm,
+    names,
     number,
     paper,
+    pens_file,
     scale,
     speed_mm_s,
 )
 from planner.cli.report import check_report, write_report_of
-from planner.cli.terminal import print_summary, print_warnings, progress
+from planner.cli.terminal import print_lines, print_summary, print_warnings, progress
 from planner.cli.workers import add_workers_option
+from planner.errors import UsageError
 from planner.files import STANDARD
 from planner.paper_size import Orientation
+from planner.pens import GroupBy
 from planner.progress import of_all_stages
 from planner.settings import (
     MAX_RATE_HZ,
@@ -38,6 +44,9 @@ from planner.settings import (
     PlaceKind,
     PlanSettings,
 )
+
+if TYPE_CHECKING:
+    from planner.trajectory import Trajectory
 
 _DESCRIPTION = """\
 Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a trajectory of joint positions.
@@ -82,7 +91,12 @@ def plan(arguments: list[str]) -> int:
     options = preferred(plan_parser(), arguments)
     drawing: Path = options.drawing
     target: Path = options.output or (Path(STANDARD) if drawing == STANDARD_INPUT else Path(f"{drawing.stem}.csv"))
+    if options.list_layers:
+        print_lines(_layers(drawing))
+        return 0
     check_target(target, drawing)
+    if options.split and target == Path(STANDARD):
+        raise UsageError("--split writes a file for each pen: name one with -o")
     if options.report:
         check_report(options.report, drawing, target)
     settings = settings_of(options)
@@ -98,8 +112,13 @@ def plan(arguments: list[str]) -> int:
 
         planned = plan_drawing(drawing, settings, report, options.workers)
         raise_if_interrupted()
-        write_trajectory(planned.trajectory, target)
-        written = [target]
+        made = {target: planned.trajectory}
+        if options.split and planned.by_pen:
+            made = {_of_pen(target, index, part): part for index, part in enumerate(planned.by_pen, 1)}
+        for file, trajectory in made.items():
+            check_target(file, drawing)
+            write_trajectory(trajectory, file)
+        written = list(made)
         if options.report:
             report("report", 0, 1)
             written.append(write_report_of(planned, settings, arguments, options.report))
@@ -134,9 +153,27 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
         mirror=options.mirror,
         margin_mm=options.margin,
         rotate_deg=options.rotate,
+        layers=options.layers,
+        by=None if options.by is None else GroupBy(options.by),
+        pens=options.pens,
         skip_unreachable=options.skip_unreachable,
         weights=options.weights,
     )
+
+
+def _of_pen(target: Path, index: int, part: Trajectory) -> Path:
+    """The file of one pen's part: numbered, and with its name as far as file names hold it."""
+    name = re.sub(r"[^\w.-]+", "-", part.pens[0].name).strip("-.")[:40]
+    return target.with_name(f"{target.stem}_{index}{'_' if name else ''}{name}{target.suffix}")
+
+
+def _layers(drawing_file: Path) -> list[str]:
+    from planner.drawing.length import length_mm as page_length_mm
+    from planner.drawing.pen_groups import described
+    from planner.drawing.svg import read_drawing
+
+    drawing = read_drawing(drawing_file)
+    return described(drawing, lambda outlines: page_length_mm(outlines, drawing.user_to_page))
 
 
 def preferred(parser: Parser, arguments: list[str]) -> argparse.Namespace:
@@ -172,6 +209,10 @@ def plan_parser() -> Parser:
         type=output_file,
         metavar="DIR",
         help="write DIR/index.html too: a page with summary, pictures, tables and the result of the check",
+    )
+    parser.add_argument("--list-layers", action="store_true", help="print the drawing's layers, and plan nothing")
+    parser.add_argument(
+        "--split", action="store_true", help="a trajectory for each pen, traj_PEN.csv, instead of one with halts"
     )
     add_plan_options(parser)
     return parser
@@ -253,6 +294,31 @@ def add_arm_and_placement_options(parser: Parser) -> None:
     )
 
     add_placement_options(parser.add_argument_group("placement"))
+    add_pen_options(parser.add_argument_group("layers and pens"))
+
+
+def add_pen_options(pens: argparse._ArgumentGroup) -> None:
+    """The options that say which layers are drawn, and with which pens."""
+    pens.add_argument(
+        "--layers",
+        type=names,
+        metavar="NAME,...",
+        help="draw these layers alone, by name or by the number that their names begin with (default: all but those"
+        " whose names begin with %%)",
+    )
+    pens.add_argument(
+        "--by",
+        choices=[by.value for by in GroupBy],
+        help="a pen for each layer, colour or width; between two the arm parks, and you are asked for the next",
+    )
+    pens.add_argument(
+        "--pens",
+        type=pens_file,
+        default=(),
+        metavar="FILE",
+        help="the pens that there are: tables [[pen]] with name, colour, width_mm, speed_mm_s, lift_mm,"
+        " lowering_speed_mm_s, layers; each draws the layers it names, or the colours or widths nearest to it",
+    )
 
 
 def add_placement_options(placement: argparse._ArgumentGroup) -> None:

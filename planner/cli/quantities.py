@@ -7,9 +7,12 @@ import dataclasses
 import math
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 from planner.errors import UsageError
 from planner.paper_size import PaperSize, paper_size
+from planner.pens import Pen
+from planner.pens_file import read_pens
 from planner.settings import ConfigurationWeights
 
 MM_PER_UNIT = {"mm": 1.0, "cm": 10.0, "in": 25.4, "px": 25.4 / 96}
@@ -70,6 +73,22 @@ def paper(text: str) -> PaperSize:
     """Paper such as `a5`, `letter` or `100x150mm`."""
     try:
         return paper_size(text)
+    except UsageError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+
+
+def names(text: str) -> tuple[str, ...]:
+    """Names such as `sky,sea`."""
+    found = tuple(name.strip() for name in text.split(","))
+    if not all(found):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a list of names such as sky,sea")
+    return found
+
+
+def pens_file(text: str) -> tuple[Pen, ...]:
+    """The pens of a file."""
+    try:
+        return read_pens(Path(text))
     except UsageError as error:
         raise argparse.ArgumentTypeError(str(error)) from error
 

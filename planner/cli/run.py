@@ -53,7 +53,7 @@ def run(arguments: list[str]) -> int:
         if options.dry_run:
             print_lines(dry_run_lines(options, job, program, commanded))
             return 0
-        result = play_out(options, job.arm, program, rig, beginning, job.last_stroke)
+        result = play_out(options, job.arm, program, rig, beginning, job.trajectory)
     lines = result.lines()
     if rig.recording is not None and options.picture:
         positions = rig.recording().positions

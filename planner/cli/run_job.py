@@ -97,6 +97,8 @@ def dry_run_lines(options: argparse.Namespace, job: Job, program: Program, comma
         f"{program.duration_s - approach_s - retreat_s:.2f} s for it, and {retreat_s:.2f} s back",
         f"park pose: {in_words(job.arm, program.park)}",
     ]
+    if job.trajectory.pens:
+        lines.append(f"pens: {', '.join(pen.name for pen in job.trajectory.pens)}")
     if job.calibration is None or commanded is None:
         return [*lines, "servos: the arm file says nothing of them"]
     least, most = commanded.min(axis=0), commanded.max(axis=0)

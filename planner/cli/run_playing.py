@@ -23,9 +23,11 @@ from planner.arms.arm_file import load_arm
 from planner.cli.controls import KEYS, Controls, controls
 from planner.cli.run_journal import RunJournal
 from planner.cli.terminal import print_note, print_warnings, progress
+from planner.counted import counted
 from planner.error_model.random_arm import random_arm
 from planner.errors import HardwareError, UsageError
 from planner.progress import Report
+from planner.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from hardware.simulation.mujoco_arm import MujocoArm
@@ -67,20 +69,37 @@ def set_up(options: argparse.Namespace, arm: Arm, true_arm: Arm) -> Rig:
 
 
 def play_out(
-    options: argparse.Namespace, arm: Arm, program: Program, rig: Rig, beginning: Entry, last_stroke: int
+    options: argparse.Namespace, arm: Arm, program: Program, rig: Rig, beginning: Entry, trajectory: Trajectory
 ) -> PlaybackResult:
-    """How playing the program went. Errors: HardwareError, OutputError."""
+    """How playing the program of the trajectory went. Errors: HardwareError, OutputError, and UsageError where pens
+    have to be changed and there is nobody to do it."""
+    last_stroke = int(trajectory.stroke.max())
     journal = RunJournal(options, beginning, last_stroke, rig.driver, program.rate_hz, rig.clock)
     ended, complete = "broken off", False
     with progress(quiet=options.quiet, single=True) as show:
         try:
             with controls() as wishes:
+                if trajectory.pen_changes and not options.fast and not wishes.has_keys:
+                    raise UsageError(
+                        f"it needs {counted(len(trajectory.pens), 'pen')}, and somebody at a terminal to change them:"
+                        " run it in one, or plan it with --split"
+                    )
                 rig.driver.open()
                 if not options.quiet and options.port:
                     print_note(_announced(options, program, arm))
                 journal.opened()
                 display = _Display(show, rig.driver, program.rate_hz, last_stroke, None if options.quiet else wishes)
-                result = play(program, arm, rig.driver, rig.clock, request=wishes.request, observers=(display, journal))
+                changes = _PenChanges(trajectory, wishes, asks=not options.fast)
+                result = play(
+                    program,
+                    arm,
+                    rig.driver,
+                    rig.clock,
+                    request=wishes.request,
+                    observers=(display, journal),
+                    halts=trajectory.pen_changes,
+                    waiting=changes.waiting,
+                )
             ended, complete = result.end.value, result.complete
         except HardwareError as error:
             ended = str(error)
@@ -121,6 +140,23 @@ def _announced(options: argparse.Namespace, program: Program, arm: Arm) -> str:
         f"the position of the arm is not known: its servos are attached at the park pose ({park}), from which it "
         f"takes {approach_s:.1f} s to the drawing"
     )
+
+
+class _PenChanges:
+    """Asks for the next pen, and waits for a key."""
+
+    def __init__(self, trajectory: Trajectory, wishes: Controls, *, asks: bool) -> None:
+        self._pens, self._wishes, self._asks = trajectory.pens, wishes, asks
+        self._asked = -1
+
+    def waiting(self, halt: int) -> bool:
+        if not self._asks:
+            return False
+        if self._asked != halt:
+            self._asked = halt
+            self._wishes.await_key()
+            print_note(f"insert {self._pens[halt + 1].name}, then press space")
+        return self._wishes.is_awaiting()
 
 
 class _Display(Observer):

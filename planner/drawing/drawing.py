@@ -15,9 +15,13 @@ class Outline:
 
     beziers: (n_curves, 4, 2), user units; curve k ends exactly where curve k + 1 begins. A subpath of
     zero length is one curve with four equal points: a pen tap. A closed subpath ends where it began.
+    layer: the name of its layer, "" for none. colour: sRGB. width: of its stroke in user units, 0 where there is none.
     """
 
     beziers: FloatArray
+    layer: str = ""
+    colour: tuple[int, int, int] = (0, 0, 0)
+    width: float = 0.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
