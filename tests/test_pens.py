@@ -1,0 +1,145 @@
+"""Layers and pens: who draws what, in which order, and what is wrong with a file of pens."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from planner.drawing.drawing import Drawing, Outline
+from planner.drawing.layer_name import LayerName
+from planner.drawing.pen_groups import chosen_layers, only, pen_groups
+from planner.errors import UsageError
+from planner.pens import GroupBy, Pen, colour_of, hex_of
+from planner.pens_file import read_pens
+
+LINE = np.linspace((0.0, 0.0), (30.0, 0.0), 4)[None]
+channel = st.integers(0, 255)
+
+
+def drawing_of(*outlines: tuple[str, tuple[int, int, int], float]) -> Drawing:
+    lines = tuple(Outline(LINE + np.array([0.0, row]), *told) for row, told in enumerate(outlines))
+    return Drawing("drawn.svg", lines, np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), (100.0, 100.0))
+
+
+LAYERED = drawing_of(
+    ("1 sky", (255, 0, 0), 0.5),
+    ("2 sea +S50", (0, 0, 255), 0.5),
+    ("%3 grid", (0, 0, 0), 0.2),
+    ("1 sky", (0, 0, 250), 1.0),
+)
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("sky", LayerName(None, True, False, 1.0, 0.0, None)),
+        ("%3 grid", LayerName(3, False, False, 1.0, 0.0, None)),
+        ("!12 gold +S50 +D500+h40", LayerName(12, True, True, 0.5, 0.5, 40)),
+        ("4+S999 a", LayerName(4, True, False, 1.1, 0.0, None)),
+        ("", LayerName(None, True, False, 1.0, 0.0, None)),
+    ],
+)
+def test_names_of_layers_ask_for_what_axidraw_users_mean(name: str, told: LayerName) -> None:
+    assert LayerName.of(name) == told
+
+
+@given(st.text())
+def test_any_name_is_a_name(name: str) -> None:
+    assert 0.01 <= LayerName.of(name).speed_share <= 1.1
+
+
+def test_layers_are_chosen_by_name_and_number() -> None:
+    assert [outline.layer for outline in chosen_layers(LAYERED, None).outlines] == ["1 sky", "2 sea +S50", "1 sky"]
+    assert chosen_layers(LAYERED, None).skipped == {"layer that is not to be plotted (%)": 1}
+    assert [outline.layer for outline in chosen_layers(LAYERED, ("3", "2 sea +S50")).outlines] == [
+        "2 sea +S50",
+        "%3 grid",
+    ]
+    with pytest.raises(UsageError, match="has no layer 'moon'; it has 1 sky, 2 sea"):
+        chosen_layers(LAYERED, ("1", "moon"))
+
+
+@given(
+    st.sampled_from(GroupBy),
+    st.lists(st.tuples(st.sampled_from("abc"), st.tuples(channel, channel, channel), st.floats(0.0, 3.0)), min_size=1),
+)
+def test_every_line_has_one_pen_and_pens_can_be_told_apart(
+    by: GroupBy, told: list[tuple[str, tuple[int, int, int], float]]
+) -> None:
+    drawing = drawing_of(*told)
+    groups = pen_groups(drawing, by, (), 2.0)
+    drawn = [outline for group in groups for outline in group.outlines]
+    assert sorted(map(id, drawn)) == sorted(map(id, drawing.outlines))
+    assert len({group.pen for group in groups}) == len(groups)
+    for group in groups:
+        assert only(drawing, by, group.kinds, 2.0).outlines == group.outlines
+
+
+def test_pens_draw_what_is_nearest_to_them_in_their_own_order() -> None:
+    pens = (Pen("blue", (0, 0, 200)), Pen("green", (0, 255, 0)), Pen("warm", (200, 30, 0)))
+    groups = pen_groups(chosen_layers(LAYERED, None), GroupBy.COLOUR, pens, 1.0)
+    assert [(group.pen.name, group.kinds) for group in groups] == [
+        ("blue", ("#0000ff", "#0000fa")),
+        ("warm", ("#ff0000",)),
+    ]
+    wide = (Pen("fine", width_mm=0.3), Pen("broad", width_mm=2.0))
+    groups = pen_groups(LAYERED, GroupBy.WIDTH, wide, 2.0)
+    assert [(group.pen.name, group.kinds) for group in groups] == [("fine", ("1.00", "0.40")), ("broad", ("2.00",))]
+
+
+def test_layers_go_to_the_pens_that_name_them() -> None:
+    pens = (Pen("ink", layers=("1 sky", "2 sea +S50")), Pen("%3 grid"))
+    groups = pen_groups(LAYERED, GroupBy.LAYER, pens, 1.0)
+    assert [(group.pen.name, group.halts, group.speed_share) for group in groups] == [
+        ("ink", True, 1.0),
+        ("ink", False, 0.5),
+        ("%3 grid", True, 1.0),
+    ]
+    with pytest.raises(UsageError, match="no pen draws layer '%3 grid'; name it in the layers of one of ink"):
+        pen_groups(LAYERED, GroupBy.LAYER, pens[:1], 1.0)
+    halting = replace(LAYERED, outlines=tuple(replace(one, layer=f"!{one.layer}") for one in LAYERED.outlines))
+    assert all(group.halts for group in pen_groups(halting, GroupBy.LAYER, (), 1.0))
+
+
+@given(st.tuples(channel, channel, channel))
+def test_colours_go_and_come_back(colour: tuple[int, int, int]) -> None:
+    assert colour_of(hex_of(colour)) == colour and colour_of(hex_of(colour).upper()) == colour
+
+
+PENS = '[[pen]]\nname = "blue"\ncolour = "#00f"\nwidth_mm = 0.5\nspeed_mm_s = 40\nlayers = ["sky"]\n'
+
+
+def test_a_file_of_pens_is_read(tmp_path: Path) -> None:
+    (tmp_path / "pens.toml").write_text(PENS + '[[pen]]\nname = "black"\nlift_mm = 6\nlowering_speed_mm_s = 20')
+    assert read_pens(tmp_path / "pens.toml") == (
+        Pen("blue", (0, 0, 255), 0.5, ("sky",), 40.0),
+        Pen("black", lift_mm=6.0, lowering_speed_mm_s=20.0),
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        (PENS + PENS, "two pens are called 'blue'"),
+        (PENS.replace("0.5", '"thin"'), "pen 1: width_mm is a number"),
+        (PENS.replace("0.5", "-1"), "pen 1: .*width of pen 'blue'"),
+        (PENS.replace("#00f", "blue"), "pen 1: 'blue' is no colour such as"),
+        (PENS.replace("colour", "color"), "pen 1: unknown key 'color'"),
+        (PENS.replace('name = "blue"\n', ""), "pen 1: has no name"),
+        (PENS.replace('["sky"]', '"sky"'), "layers is a list"),
+        ("", r"holds tables \[\[pen\]\]"),
+        ("[pen]\nname = 'x'", r"holds tables \[\[pen\]\]"),
+        ("[[pen]", "not readable TOML"),
+    ],
+)
+def test_a_faulty_file_of_pens_is_refused_with_its_place(tmp_path: Path, text: str, fault: str) -> None:
+    (tmp_path / "pens.toml").write_text(text)
+    with pytest.raises(UsageError, match=rf"pens\.toml.*{fault}"):
+        read_pens(tmp_path / "pens.toml")
+    with pytest.raises(UsageError, match="cannot be read"):
+        read_pens(tmp_path / "none.toml")
