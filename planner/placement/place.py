@@ -21,7 +21,8 @@ from planner.placement.board import Board, board_of
 from planner.settings import PlaceKind, PlanSettings
 from planner.workspace.canvas import Canvas
 
-_ROUNDING_MM = 1e-6
+_ROUNDING_MM = 0.01
+"""Programs round the size of the page."""
 _WORTH_A_HINT = 1.25
 """How much larger a drawing has to become for a turn to be recommended."""
 _PAGE_TO_ARM = np.array([[0.0, -1.0], [-1.0, 0.0]])
