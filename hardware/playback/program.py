@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -102,6 +103,19 @@ def parking(
     """A program that draws nothing any more: where `make_program` would park, and that is all."""
     where = _park(arm, set_points, rate_hz) if park is None else np.asarray(park)
     return Program(where[None], np.array([TRAVELLING]), np.array([len(set_points) - 1.0]), rate_hz, 0, 0)
+
+
+def visiting(
+    arm: Arm, stations: FloatArray, rate_hz: float, park: Sequence[float] | FloatArray | None = None
+) -> Program:
+    """A program that draws nothing: from the park pose, or else the first of the stations (n, n_joints), to each of
+    them, and back. Errors: PlanError where no way with the pen in the air is found."""
+    where = stations[0] if park is None else np.asarray(park)
+    stops = [where, *stations, where]
+    legs = [slow_transfer(arm, start, end, rate_hz) for start, end in pairwise(stops)]
+    positions = np.concatenate((where[None], *legs))
+    n = len(positions)
+    return Program(positions, np.full(n, TRAVELLING), np.zeros(n), rate_hz, 0, 0)
 
 
 def _refined(set_points: FloatArray, stroke: IntArray, refine: int) -> tuple[FloatArray, IntArray]:

@@ -73,6 +73,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.config import config
 
             return config(rest)
+        case "paper":
+            from planner.cli.paper import paper
+
+            return paper(rest)
         case "run":
             from planner.cli.run import run
 

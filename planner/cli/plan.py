@@ -64,6 +64,7 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan compare DRAWING.svg  the same points by every method of inverse kinematics
   plan measure PHOTO        where the marks of a calibration sheet came
   plan arm [NAME]           list the arms, or describe one
+  plan paper --arm ARM      where to lay the paper, as a sheet to print
   plan estimate FOLDER      how long each drawing takes, without writing anything
   plan config               which options are in force, and where each is said"""
 
@@ -188,7 +189,8 @@ def plan_parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
     parser.usage = (
         "plan DRAWING.svg [-o traj.csv] [options]\n"
-        "       plan batch|run|pattern|measure|calibrate|predict|jog|ports|check|plot|compare|arm|estimate|config ..."
+        "       plan batch|run|pattern|measure|calibrate|predict|jog|ports|check|plot|compare|arm|paper|estimate|config"
+        " ..."
     )
     parser.add_argument(
         "drawing", type=input_file, metavar="DRAWING.svg", help="the drawing, gzipped or not; - for standard input"

@@ -36,6 +36,11 @@ def run(arguments: list[str]) -> int:
     job = examine(options)
     true_arm = true_arm_of(options, job.arm)
     rig = set_up(options, job.arm, true_arm)
+    if options.frame:
+        from planner.cli.run_frame import go_round
+
+        with breaking_off(), one_at_a_time(options), closing(rig.driver):
+            return 0 if go_round(options, job, rig) else EXIT_STOPPED
     with breaking_off(), nullcontext() if options.dry_run else one_at_a_time(options), closing(rig.driver):
         asked = None if options.dry_run else rig.driver
         beginning = where_to_begin(options, job.arm, job.trajectory.stroke, asked)

@@ -21,6 +21,7 @@ examples:
   plan run traj.csv --fast --picture drawn.png --servos real
   plan run traj.csv --driver mujoco --fast --film arm.gif
   plan run traj.csv --driver maestro --port /dev/ttyACM0 --dry-run
+  plan run traj.csv --driver maestro --port /dev/ttyACM0 --frame
   plan run traj.csv --driver native --port /dev/ttyUSB0 --speed-factor 0.5
   plan run traj.csv --driver native --port socket://arm.local:3333 --resume
 
@@ -71,6 +72,9 @@ def parser() -> Parser:
     )
     options.add_argument(
         "--dry-run", action="store_true", help="examine everything and say what would be sent, but send nothing"
+    )
+    options.add_argument(
+        "--frame", action="store_true", help="go round the corners of what is drawn on, pen up, and draw nothing"
     )
     options.add_argument("--fast", action="store_true", help="sim, mujoco: do not wait for the time of each sample")
     options.add_argument(
@@ -145,5 +149,7 @@ def refuse_contradictions(options: argparse.Namespace) -> None:
             raise UsageError(f"--{name} goes with --servos real")
     if options.true_arm and options.seed is not None:
         raise UsageError("--true-arm says what the arm really is; leave out --seed")
+    if options.frame and (options.resume or options.from_stroke is not None or options.record or options.picture):
+        raise UsageError("--frame draws nothing; leave out --resume, --from-stroke, --record and --picture")
     if options.resume and options.from_stroke is not None:
         raise UsageError("--resume finds the stroke itself; leave out --from-stroke")
