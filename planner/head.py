@@ -52,6 +52,18 @@ class Chosen:
 
 
 @dataclass(frozen=True, slots=True)
+class PathWork:
+    """join_mm: ends that are nearer are joined; None: only those that the tolerance takes for one. dedup_mm: of lines
+    that are nearer, one is drawn; 0: all are. simplify_mm: points are dropped that change a line by less. passes: how
+    often each line is drawn."""
+
+    join_mm: float | None = None
+    dedup_mm: float = 0.0
+    simplify_mm: float = 0.0
+    passes: int = 1
+
+
+@dataclass(frozen=True, slots=True)
 class PenInk:
     """A pen by what is seen of it. width_mm: 0 where it is not known."""
 
@@ -65,6 +77,7 @@ class PenInk:
 
 NOTHING_TOLD = Placement()
 ALL = Chosen()
+NO_WORK = PathWork()
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +113,7 @@ class Head:
     pens: tuple[PenInk, ...] = ()
     pen_changes: tuple[int, ...] = ()
     chosen: Chosen = ALL
+    path_work: PathWork = NO_WORK
 
     def text(self) -> str:
         """The comment lines."""
@@ -146,6 +160,16 @@ class Head:
         entries += [(f"pen_{index}", str(pen)) for index, pen in enumerate(self.pens)]
         if self.pen_changes:
             entries.append(("pen_changes", " ".join(map(str, self.pen_changes))))
+        entries += [
+            (key, _shortest(value))
+            for key, value, usual in (
+                ("join_mm", self.path_work.join_mm, None),
+                ("dedup_mm", self.path_work.dedup_mm, 0.0),
+                ("simplify_mm", self.path_work.simplify_mm, 0.0),
+                ("passes", self.path_work.passes, 1),
+            )
+            if value is not None and value != usual
+        ]
         if self.left_out != NOTHING_LEFT_OUT:
             entries += [("left_out_mm", f"{self.left_out.length_mm:.6g}"), ("left_out_taps", str(self.left_out.taps))]
         return entries
@@ -206,6 +230,7 @@ def read_head(name: str, file: IO[str]) -> tuple[Head, str, int]:
         paper,
         *_pens(name, found),
         _chosen(name, found),
+        _path_work(name, found),
     )
     return head, line, number
 
@@ -285,6 +310,19 @@ def _chosen(name: str, found: Mapping[str, tuple[str, int]]) -> Chosen:
         if (key := f"only_{by}") in found:
             return Chosen(layers, by, _names(name, found, key))
     return Chosen(layers)
+
+
+def _path_work(name: str, found: Mapping[str, tuple[str, int]]) -> PathWork:
+    values = {}
+    for key, least in (("join_mm", 0.0), ("dedup_mm", 0.0), ("simplify_mm", 0.0), ("passes", 1.0)):
+        if key in found:
+            (value,) = _numbers(name, found, key, 1)
+            if value < least or (key == "passes" and value != int(value)):
+                raise TrajectoryFileError(name, found[key][1], f"'# {key}:' is {value:g}; that cannot be")
+            values[key] = value
+    return PathWork(
+        values.get("join_mm"), values.get("dedup_mm", 0.0), values.get("simplify_mm", 0.0), int(values.get("passes", 1))
+    )
 
 
 def _names(name: str, found: Mapping[str, tuple[str, int]], key: str) -> tuple[str, ...]:

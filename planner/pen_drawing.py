@@ -15,6 +15,7 @@ from planner.drawing.flatten import flatten_all
 from planner.drawing.join import join_strokes
 from planner.drawing.metric import Metric
 from planner.drawing.order import ordered
+from planner.drawing.path_work import longer, repeated, simplified, without_doubles
 from planner.drawing.pen_groups import PenGroup
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
 from planner.execution.context import PlanContext
@@ -84,6 +85,10 @@ class PenDrawing:
         """Strokes from the outlines, in their order from `start_mm` (2,) on. Errors: PlanError, UsageError."""
         model, settings = self.context.model, self.context.settings
         self.strokes, self.left_out, self.notes = _strokes(self.group, svg_to_arm, model, settings)
+        if settings.keep_order or settings.reverse:
+            if settings.reverse:
+                self.strokes = [stroke[::-1] for stroke in reversed(self.strokes)]
+            return
         metric = Metric(travel_time_metric(model), exponent=1 / 3)
         self.strokes, is_finished = ordered(self.strokes, start_mm, metric)
         if not is_finished:
@@ -145,16 +150,32 @@ def _strokes(
     warnings = []
     left_out = LeftOut()
     strokes = flatten_all(group.outlines, svg_to_arm, FLATTEN_SHARE * settings.tolerance_mm)
-    strokes = join_strokes(strokes, JOIN_SHARE * settings.tolerance_mm)
+    if settings.dedup_mm:
+        strokes, doubled_mm = without_doubles(strokes, settings.dedup_mm)
+        if doubled_mm:
+            warnings.append(f"drawn once, though the drawing has it more than once: {doubled_mm:.1f} mm of line")
+    if not (settings.keep_order or settings.reverse):
+        strokes = join_strokes(
+            strokes, JOIN_SHARE * settings.tolerance_mm if settings.join_mm is None else settings.join_mm
+        )
+    if settings.simplify_mm:
+        strokes = simplified(strokes, settings.simplify_mm)
+    if settings.min_length_mm:
+        strokes, short = longer(strokes, settings.min_length_mm)
+        left_out += _drawn(short)
+        if short:
+            warnings.append(f"shorter than {settings.min_length_mm:g} mm and left out: {counted(len(short), 'stroke')}")
+    strokes = repeated(strokes, settings.passes)
     branches = model.branches(settings.weights)
     if settings.skip_unreachable:
         n_taps = _drawn(strokes).taps
         strokes, lost_mm, lost_whole = clip_strokes(
             strokes, _in_reach(branches), max(float(branch.radii_mm[-1]) for branch in branches)
         )
-        left_out = LeftOut(lost_mm, n_taps - _drawn(strokes).taps)
+        lost = LeftOut(lost_mm, n_taps - _drawn(strokes).taps)
+        left_out += lost
         if lost_mm or lost_whole:
-            whole = counted(lost_whole - left_out.taps, "stroke") + " and " + counted(left_out.taps, "tap")
+            whole = counted(lost_whole - lost.taps, "stroke") + " and " + counted(lost.taps, "tap")
             warnings.append(f"out of reach and left out: {lost_mm:.1f} mm of line; {whole} whole")
     if len(branches) > 1 and settings.method is Method.PATH:
         strokes, n_split, n_more = split_strokes(strokes, [branch.reaches for branch in branches])

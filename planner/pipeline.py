@@ -20,7 +20,7 @@ from planner.drawing.svg import read_drawing
 from planner.errors import PlanError
 from planner.execution.context import PlanContext
 from planner.execution.workers import ALONE, ChunkExecutor, Workers, executor_of
-from planner.head import Chosen, LeftOut
+from planner.head import Chosen, LeftOut, PathWork
 from planner.motion.speed_limit import pen_speed_mm_s
 from planner.motion.timed_stroke import TimedStroke
 from planner.pen_drawing import PenDrawing, lift_mm, require_bounded_whole
@@ -86,6 +86,7 @@ def plan(
         pens=samples.pens,
         pen_changes=samples.pen_changes,
         chosen=Chosen(settings.layers),
+        path_work=PathWork(settings.join_mm, settings.dedup_mm, settings.simplify_mm, settings.passes),
     )
     verify(trajectory, arm)
     by = settings.pens_by

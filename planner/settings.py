@@ -62,6 +62,7 @@ class Anchor(StrEnum):
 
 
 MOST_COPIES = 1000
+MOST_PASSES = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +121,12 @@ class PlanSettings:
         mirror: Left and right change places before it is turned.
         margin_mm: Kept free along the edges of the canvas or the paper.
         rotate_deg: How far the drawing is turned before it is placed.
+        join_mm: Ends that are nearer are joined; None: those that the tolerance takes for one.
+        dedup_mm: Of lines that are nearer, one is drawn; 0: all are.
+        simplify_mm: Points are dropped that change a line by less.
+        min_length_mm: Shorter strokes are left out.
+        passes: How often each line is drawn.
+        keep_order: Strokes are drawn in the order of the drawing. reverse: in the opposite one.
         layers: Those that are drawn, by name or number; None: all but those that are not to be plotted.
         by: What tells which pen draws a line; None: one pen draws all, or the nearest of the `pens` in colour.
         pens: The pens that there are, in the order in which they draw.
@@ -148,6 +155,13 @@ class PlanSettings:
     mirror: bool = False
     margin_mm: float = 5.0
     rotate_deg: float = 0.0
+    join_mm: float | None = None
+    dedup_mm: float = 0.0
+    simplify_mm: float = 0.0
+    min_length_mm: float = 0.0
+    passes: int = 1
+    keep_order: bool = False
+    reverse: bool = False
     layers: tuple[str, ...] | None = None
     by: GroupBy | None = None
     pens: tuple[Pen, ...] = ()
@@ -164,6 +178,10 @@ class PlanSettings:
             "lift_mm": None if self.lift_mm is None else number_in("lift_mm", self.lift_mm),
             "margin_mm": number_in("margin_mm", self.margin_mm, zero=True),
             "scale": None if self.scale is None else number_in("scale", self.scale),
+            "join_mm": None if self.join_mm is None else number_in("join_mm", self.join_mm, zero=True),
+            "dedup_mm": number_in("dedup_mm", self.dedup_mm, zero=True),
+            "simplify_mm": number_in("simplify_mm", self.simplify_mm, zero=True),
+            "min_length_mm": number_in("min_length_mm", self.min_length_mm, zero=True),
             "rotate_deg": number_in("rotate_deg", self.rotate_deg, zero=True, minimum=-inf),
         }
         choices = {
@@ -178,7 +196,7 @@ class PlanSettings:
             choices["by"] = one_of("by", self.by, GroupBy)
         for name, value in {**numbers, **choices}.items():
             object.__setattr__(self, name, value)
-        for name in ("fit", "mirror", "skip_unreachable"):
+        for name in ("fit", "keep_order", "mirror", "reverse", "skip_unreachable"):
             if not isinstance(getattr(self, name), bool) and not (name == "fit" and self.fit is None):
                 raise UsageError(f"{name} is True or False, not {getattr(self, name)!r:.40}")
         self._check_placement()
@@ -231,6 +249,8 @@ class PlanSettings:
             raise UsageError(f"layers are names, one at least, not {self.layers!r:.40}")
         if not all(isinstance(pen, Pen) for pen in self.pens):
             raise UsageError(f"pens are values of Pen, not {self.pens!r:.40}")
+        if not isinstance(self.passes, int) or not 1 <= self.passes <= MOST_PASSES:
+            raise UsageError(f"passes is a whole number, 1 to {MOST_PASSES}, not {self.passes!r:.40}")
         columns, rows = self.copies
         if not (isinstance(columns, int) and isinstance(rows, int) and columns >= 1 and rows >= 1):
             raise UsageError(f"copies are columns and rows, one of each at least, not {self.copies!r:.40}")

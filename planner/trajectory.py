@@ -19,11 +19,13 @@ from planner.files import written_aside
 from planner.head import (
     ALL,
     LONGEST_LINE,
+    NO_WORK,
     NOTHING_LEFT_OUT,
     NOTHING_TOLD,
     Chosen,
     Head,
     LeftOut,
+    PathWork,
     PenInk,
     Placement,
     is_number,
@@ -65,6 +67,7 @@ class Trajectory:
         pens: Those that draw, in their order, where somebody speaks of pens.
         pen_changes: The samples, at rest away from the paper, at which each pen but the first is put in.
         chosen: What of the drawing was drawn.
+        path_work: What was done to its lines beforehand.
         paper: Where the paper lies that arm millimetres are counted on, in the frame of the base.
     """
 
@@ -85,6 +88,7 @@ class Trajectory:
     pens: tuple[PenInk, ...] = ()
     pen_changes: tuple[int, ...] = ()
     chosen: Chosen = ALL
+    path_work: PathWork = NO_WORK
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Trajectory:
@@ -161,6 +165,7 @@ class Trajectory:
             self.pens,
             self.pen_changes,
             self.chosen,
+            self.path_work,
         )
 
     @property
@@ -255,6 +260,7 @@ def read_trajectory(source: Path) -> Trajectory:
         pens=head.pens,
         pen_changes=head.pen_changes,
         chosen=head.chosen,
+        path_work=head.path_work,
     )
 
 

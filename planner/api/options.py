@@ -36,6 +36,13 @@ class PlanOptions(TypedDict, total=False):
     mirror: bool
     margin_mm: float
     rotate_deg: float
+    join_mm: float | None
+    dedup_mm: float
+    simplify_mm: float
+    min_length_mm: float
+    passes: int
+    keep_order: bool
+    reverse: bool
     layers: tuple[str, ...] | None
     by: str | None
     pens: tuple[Pen, ...]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from planner.arrays import BoolArray, FloatArray
 from planner.checking.between import Sweep
@@ -49,13 +50,15 @@ def drawing_findings(
             *shape,
             Finding("nothing missing", False, remark=f"the pen is never down: all {missing_mm:.1f} mm are missing"),
         ]
-    limit = tolerance_mm + FLATTENING_MM
-    off_mm = [wanted.distance_mm(pen.points_mm) for pen in pen_lines]
+    work = trajectory.path_work
+    limit = tolerance_mm + FLATTENING_MM + work.simplify_mm
+    allowed = _dense([*wanted_lines, *_bridges(wanted_lines, work.join_mm or 0.0)])
+    off_mm = [allowed.distance_mm(pen.points_mm) for pen in pen_lines]
     return [
         *shape,
         _extra(trajectory, pen_lines, off_mm, sweeps, limit, affine),
-        _missing(trajectory, wanted, wanted_lines, pen_lines, limit, affine),
-        _drawn_once(trajectory, wanted, pen_lines[0], off_mm[0] > limit, sweeps[0], limit, affine),
+        _missing(trajectory, wanted, wanted_lines, pen_lines, limit + work.dedup_mm, affine),
+        _drawn_once(trajectory, allowed, pen_lines[0], off_mm[0] > limit, sweeps[0], limit, affine),
     ]
 
 
@@ -69,6 +72,15 @@ def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: Floa
     wanted = _dense(flatten_all(trajectory.all_of(drawing).outlines, user_to_arm(trajectory), FLATTENING_MM))
     distance[trajectory.pen] = wanted.distance_mm(tip_mm[trajectory.pen, :2])
     return distance
+
+
+def _bridges(lines: Sequence[FloatArray], gap_mm: float) -> list[FloatArray]:
+    """(2, 2) straight lines between ends of lines that are no further apart, where the header tells of joined ends."""
+    if not gap_mm:
+        return []
+    ends = np.array([end for line in lines if len(line) > 1 for end in (line[0], line[-1])]).reshape(-1, 2)
+    pairs = cKDTree(ends).query_pairs(gap_mm * (1.0 + 1e-6), output_type="ndarray")
+    return list(ends[pairs])
 
 
 def _dense(lines: Sequence[FloatArray]) -> DenseLines:
@@ -179,6 +191,7 @@ def _drawn_once(
     place = replace(
         place_of(trajectory, int(sweep.sample[point]), point, sweep), svg_user=_user(pen.points_mm[found.point], affine)
     )
+    limit_of_passes = trajectory.path_work.passes * found.limit
     return Finding(
-        "nothing twice", found.figure <= found.limit, found.figure, found.limit, found.unit, place, found.remark
+        "nothing twice", found.figure <= limit_of_passes, found.figure, limit_of_passes, found.unit, place, found.remark
     )

@@ -25,6 +25,7 @@ from planner.cli.quantities import (
     pens_file,
     scale,
     speed_mm_s,
+    whole_number,
 )
 from planner.cli.report import check_report, write_report_of
 from planner.cli.terminal import print_lines, print_summary, print_warnings, progress
@@ -47,6 +48,8 @@ from planner.settings import (
 
 if TYPE_CHECKING:
     from planner.trajectory import Trajectory
+
+USUAL_DEDUP_MM = 0.05
 
 _DESCRIPTION = """\
 Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a trajectory of joint positions.
@@ -154,6 +157,13 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
         mirror=options.mirror,
         margin_mm=options.margin,
         rotate_deg=options.rotate,
+        join_mm=options.join,
+        dedup_mm=options.dedup or 0.0,
+        simplify_mm=options.simplify,
+        min_length_mm=options.min_length,
+        passes=options.passes,
+        keep_order=options.keep_order,
+        reverse=options.reverse,
         layers=options.layers,
         by=None if options.by is None else GroupBy(options.by),
         pens=options.pens,
@@ -297,6 +307,7 @@ def add_arm_and_placement_options(parser: Parser) -> None:
 
     add_placement_options(parser.add_argument_group("placement"))
     add_pen_options(parser.add_argument_group("layers and pens"))
+    add_path_options(parser.add_argument_group("lines"))
 
 
 def add_pen_options(pens: argparse._ArgumentGroup) -> None:
@@ -321,6 +332,41 @@ def add_pen_options(pens: argparse._ArgumentGroup) -> None:
         help="the pens that there are: tables [[pen]] with name, colour, width_mm, speed_mm_s, lift_mm,"
         " lowering_speed_mm_s, layers; each draws the layers it names, or the colours or widths nearest to it",
     )
+
+
+def add_path_options(lines: argparse._ArgumentGroup) -> None:
+    """The options that say what is done to lines before they are drawn."""
+    default = PlanSettings()
+    lines.add_argument(
+        "--join", type=length_mm(zero=True), metavar="LENGTH", help="join ends that are nearer (default: that touch)"
+    )
+    lines.add_argument(
+        "--dedup",
+        type=length_mm(zero=True),
+        nargs="?",
+        const=USUAL_DEDUP_MM,
+        metavar="LENGTH",
+        help=f"draw one of lines that run within so much of each other (without a length: {USUAL_DEDUP_MM:g} mm)",
+    )
+    lines.add_argument(
+        "--simplify",
+        type=length_mm(zero=True),
+        default=default.simplify_mm,
+        metavar="LENGTH",
+        help="drop points that change a line by less, beside the tolerance",
+    )
+    lines.add_argument(
+        "--min-length",
+        type=length_mm(zero=True),
+        default=default.min_length_mm,
+        metavar="LENGTH",
+        help="leave out strokes that are shorter, taps aside",
+    )
+    lines.add_argument(
+        "--passes", type=whole_number, default=default.passes, metavar="N", help="draw each line so often, pen down"
+    )
+    lines.add_argument("--keep-order", action="store_true", help="draw in the order of the drawing, nothing joined")
+    lines.add_argument("--reverse", action="store_true", help="draw in the opposite order, each line backwards")
 
 
 def add_placement_options(placement: argparse._ArgumentGroup) -> None:

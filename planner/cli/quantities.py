@@ -93,6 +93,13 @@ def pens_file(text: str) -> tuple[Pen, ...]:
         raise argparse.ArgumentTypeError(str(error)) from error
 
 
+def whole_number(text: str) -> int:
+    """A whole number from 0 on."""
+    if not (text.isascii() and text.isdecimal() and len(text) < 10):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number")
+    return int(text)
+
+
 def scale(text: str) -> float:
     """A factor such as `0.5` or `50%`."""
     share = text.strip().removesuffix("%")
