@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 class PlotKind(StrEnum):
     """What a picture of a trajectory shows."""
 
+    SHEET = "sheet"
     PROFILES = "profiles"
     DRAWING = "drawing"
     SPEED = "speed"
@@ -55,6 +56,10 @@ def figure_of(
 
         return plot_profiles(trajectory, arm, look, from_s=from_s, to_s=to_s)
     tip_mm = _tip_mm(trajectory, arm)
+    if kind is PlotKind.SHEET:
+        from planner.plots.ink import plot_sheet
+
+        return plot_sheet(trajectory, tip_mm, look)
     if kind is PlotKind.PHASE:
         from planner.plots.phase_plane import plot_phase_plane
 

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from planner.cli import EXIT_DEFECT, main
-from planner.cli.plan import _parser, settings_of
+from planner.cli.plan import plan_parser, settings_of
 from planner.cli.terminal import progress
 from planner.counted import counted
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach
@@ -202,7 +202,7 @@ def test_weights_that_mean_nothing_are_refused(drawing: Path, text: str, capsys:
 
 
 def test_the_defaults_are_those_of_the_settings() -> None:
-    assert settings_of(_parser().parse_args(["a.svg"])) == PlanSettings()
+    assert settings_of(plan_parser().parse_args(["a.svg"])) == PlanSettings()
 
 
 @pytest.mark.parametrize(

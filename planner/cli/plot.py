@@ -27,6 +27,7 @@ Draw a trajectory, or play it in a film. Or, with --kind workspace and no trajec
 its paper.
 
 kinds:
+  sheet      the paper as it will look: ink in its colours, as wide as the pens draw
   profiles   position, velocity, acceleration and jerk of every joint, with their limits
   drawing    what the pen draws, over what was to be drawn
   speed      the pen's path with its speed as colour
@@ -39,6 +40,7 @@ kinds:
 _EPILOG = """\
 examples:
   plan plot traj.csv -o profiles.png
+  plan plot traj.csv -o sheet.png --kind sheet
   plan plot traj.csv -o start.png --from 0 --to 2.5
   plan plot traj.csv -o flower.svg --kind drawing --drawing flower.svg
   plan plot traj.csv -o speed.pdf --kind speed --size paper

@@ -14,6 +14,7 @@ from planner.drawing.drawing import Drawing
 from planner.plots.coloured_path import plot_error, plot_speed
 from planner.plots.drawing import plot_drawing
 from planner.plots.figure_file import write_figure
+from planner.plots.ink import plot_sheet
 from planner.plots.look import Look, Theme
 from planner.plots.paper import pieces
 from planner.plots.profiles import plot_profiles
@@ -54,6 +55,11 @@ def pictures(
     lift_mm = arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
     canvas_mm = canvas_of(model, settings.canvas, lift_mm).corners_arm_mm
     drawn = joined_while_drawing(trajectory)
+    yield _picture(
+        "Sheet",
+        "The paper as it will look: ink in its colours and as wide as the pens draw, seen from behind the arm.",
+        lambda look: plot_sheet(trajectory, tip_mm, look),
+    )
     yield _picture(
         "Drawing",
         "What the pen draws, over what was to be drawn, on the paper in front of the arm.",
