@@ -23,7 +23,9 @@ from planner.cli.terminal import progress
 from planner.counted import counted
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach
 from planner.execution.workers import Workers
-from planner.settings import CanvasKind, ConfigurationWeights, Method, PlanSettings
+from planner.paper_size import Orientation, paper_size
+from planner.pens import GroupBy, Pen
+from planner.settings import Anchor, CanvasKind, ConfigurationWeights, Method, PlaceKind, PlanSettings
 from planner.summary import PhaseTimes, PlanSummary
 from planner.trajectory import Trajectory, read_trajectory, write_trajectory
 
@@ -133,6 +135,8 @@ def test_a_plan_is_written_summed_up_and_warned_of(
 
 def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[Any]]) -> None:
     asked = planned()
+    pens = drawing.with_name("pens.toml")
+    pens.write_text('[[pen]]\nname = "blue"')
     assert (
         main(
             [
@@ -155,12 +159,45 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
                 "96px",
                 "--canvas",
                 "optimal",
+                "--place",
+                "ink",
                 "--no-fit",
+                "--scale",
+                "50%",
+                "--paper",
+                "a6",
+                "--orientation",
+                "portrait",
+                "--at",
+                "10",
+                "2cm",
+                "--origin",
+                "centre",
+                "--copies",
+                "2x3",
+                "--mirror",
                 "--margin",
                 "0.5in",
                 "--rotate",
                 "-90",
                 "--skip-unreachable",
+                "--join",
+                "0.2",
+                "--dedup",
+                "--simplify",
+                "0.1",
+                "--min-length",
+                "0.5",
+                "--passes",
+                "2",
+                "--keep-order",
+                "--reverse",
+                "--layers",
+                "1,sky",
+                "--by",
+                "layer",
+                "--pens",
+                str(pens),
                 "--weights",
                 "time=3,reversals=0",
             ]
@@ -177,20 +214,42 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
         dwell_s=0.25,
         lift_mm=25.4,
         canvas=CanvasKind.OPTIMAL,
+        place=PlaceKind.INK,
         fit=False,
+        scale=0.5,
+        paper=paper_size("a6"),
+        orientation=Orientation.PORTRAIT,
+        at_mm=(10.0, 20.0),
+        origin=Anchor.CENTRE,
+        copies=(2, 3),
+        mirror=True,
         margin_mm=12.7,
         rotate_deg=-90,
         skip_unreachable=True,
+        join_mm=0.2,
+        dedup_mm=0.05,
+        simplify_mm=0.1,
+        min_length_mm=0.5,
+        passes=2,
+        keep_order=True,
+        reverse=True,
+        layers=("1", "sky"),
+        by=GroupBy.LAYER,
+        pens=(Pen("blue"),),
         weights=ConfigurationWeights(time=3, reversals=0),
     )
     [(_, settings)] = asked
     default = PlanSettings()
     for one in fields(PlanSettings):
+        if one.name == "align":  # which --at excludes
+            continue
         assert getattr(wanted, one.name) != getattr(default, one.name), f"{one.name} is not varied here"
         value = getattr(wanted, one.name)
         assert getattr(settings, one.name) == (
             value if isinstance(value, ConfigurationWeights) else pytest.approx(value)
         )
+    assert main([str(drawing), "--align", "top-left"]) == 0
+    assert asked[1][1] == PlanSettings(align=Anchor.TOP_LEFT)
 
 
 @pytest.mark.parametrize(
