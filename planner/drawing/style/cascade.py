@@ -9,10 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from cssselect2.parser import SelectorError
+
 from planner.drawing.style import media
 from planner.drawing.style.declarations import Declaration, in_attribute, parse_style_attribute
 from planner.drawing.style.properties import ATTRIBUTES
-from planner.drawing.style.selectors import Matches, SelectorError, Tree, compiled, subject
+from planner.drawing.style.selectors import Matches, Tree, compiled, subject
 from planner.drawing.style.sheet import UNLAYERED, Layer, Rule
 from planner.drawing.xml_tree import Element
 

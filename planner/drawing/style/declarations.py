@@ -6,7 +6,7 @@ Shorthands are written out, values that are none are dropped, and so is what bea
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -15,6 +15,7 @@ from tinycss2.ast import Node
 
 from planner.drawing.style.properties import ALIASES, PROPERTIES
 from planner.drawing.style.shorthands import SHORTHANDS
+from planner.drawing.style.tokens import text_of
 
 WIDE_KEYWORDS = frozenset({"inherit", "initial", "unset", "revert", "revert-layer"})
 # What is plain enough to be cut at its semicolons and colons; the rest goes to the parser of CSS.
@@ -50,12 +51,8 @@ def declarations(content: Iterable[Node]) -> list[Declaration]:
     found: list[Declaration] = []
     for node in content:
         if node.type == "declaration":
-            found.extend(declared(node.name, value_text(node.value), node.important))
+            found.extend(declared(node.name, text_of(node.value), node.important))
     return found
-
-
-def value_text(tokens: Iterable[Node]) -> str:
-    return tinycss2.serialize([token for token in tokens if token.type != "comment"]).strip()
 
 
 def has_substitution(value: str) -> bool:
@@ -81,7 +78,7 @@ def declared(name: str, text: str, is_important: bool = False) -> tuple[Declarat
 def _expanded(name: str, text: str, is_important: bool) -> Iterable[Declaration]:
     longhands, expand = SHORTHANDS[name]
     if text.lower() in WIDE_KEYWORDS:
-        values = dict.fromkeys(longhands, text.lower())
+        values: Mapping[str, str] = dict.fromkeys(longhands, text.lower())
     elif has_substitution(text):
         return [Declaration(longhand, text, is_important, name) for longhand in longhands]
     else:

@@ -71,7 +71,6 @@ NEVER_RENDERED = frozenset(
 TEXT_ELEMENTS = frozenset({"text", "tspan", "textPath", "tref", "altGlyph", "a"})
 _VIEWPORTS = frozenset({"svg", "symbol", "image", "foreignObject", "mask", "rect", "use"})
 _OUTERMOST = frozenset({"svg"})
-_FONT_WORDS = {"normal"}
 
 _TABLE: list[Property] = []
 
@@ -107,7 +106,7 @@ def _without_bearing(names: str) -> None:
 
 _UNSIGNED = g.length(is_unitless=True, is_signed=False)
 _COORDINATE = g.length(is_unitless=True)
-_SIZE = g.length("auto", "min-content", "max-content", "fit-content", is_signed=False)
+_SIZE = g.length("auto min-content max-content fit-content", is_signed=False)
 _OPACITY = g.number(has_percentage=True)
 
 # Geometry (SVG 2, section 7.4 and chapter 9)
@@ -124,7 +123,7 @@ _drawn("d", "", g.path_data, elements=frozenset({"path"}))
 # Transforms (CSS Transforms 1 and 2); the user agent's style sheet of SVG puts the origin at 0 0
 _drawn("transform", "none", g.transform)
 _drawn("transform-origin", "0 0", g.transform_origin)
-_css("transform-box", "view-box", g.words("content-box", "border-box", "fill-box", "stroke-box", "view-box"))
+_css("transform-box", "view-box", g.words("content-box border-box fill-box stroke-box view-box"))
 _css("translate", "none", g.anything)
 _css("rotate", "none", g.anything)
 _css("scale", "none", g.anything)
@@ -133,25 +132,25 @@ _drawn(
     "display",
     "inline",
     g.several(
-        *["none", "inline", "block", "contents", "inline-block", "inline-flex", "inline-grid", "inline-table", "flex", "grid", "table", "flow", "flow-root", "list-item", "run-in", "ruby", "math", "table-cell", "table-row", "table-column", "table-caption", "table-row-group", "table-header-group", "table-footer-group", "table-column-group", "-webkit-box", "-webkit-flex", "-webkit-inline-box", "-webkit-inline-flex"]
+        "none inline block contents inline-block inline-flex inline-grid inline-table flex grid table flow flow-root list-item run-in ruby math table-cell table-row table-column table-caption table-row-group table-header-group table-footer-group table-column-group -webkit-box -webkit-flex -webkit-inline-box -webkit-inline-flex"
     ),
 )
-_drawn("visibility", "visible", g.words("visible", "hidden", "collapse"), inherited=True)
-_drawn("overflow", "visible", g.several("visible", "hidden", "scroll", "auto", "clip", "overlay"))
+_drawn("visibility", "visible", g.words("visible hidden collapse"), inherited=True)
+_drawn("overflow", "visible", g.several("visible hidden scroll auto clip overlay"))
 _drawn("opacity", "1", _OPACITY)
 _drawn("color", "black", g.colour, inherited=True)
 _drawn("fill", "black", g.paint, inherited=True)
 _drawn("fill-opacity", "1", _OPACITY, inherited=True)
-_drawn("fill-rule", "nonzero", g.words("nonzero", "evenodd"), inherited=True)
+_drawn("fill-rule", "nonzero", g.words("nonzero evenodd"), inherited=True)
 _drawn("stroke", "none", g.paint, inherited=True)
 _drawn("stroke-opacity", "1", _OPACITY, inherited=True)
 _drawn("stroke-width", "1", _UNSIGNED, inherited=True)
 _drawn("stroke-dasharray", "none", g.lengths("none"), inherited=True)
 _drawn("stroke-dashoffset", "0", _COORDINATE, inherited=True)
-_drawn("stroke-linecap", "butt", g.words("butt", "round", "square"), inherited=True)
-_drawn("stroke-linejoin", "miter", g.words("miter", "round", "bevel"), inherited=True)
+_drawn("stroke-linecap", "butt", g.words("butt round square"), inherited=True)
+_drawn("stroke-linejoin", "miter", g.words("miter round bevel"), inherited=True)
 _drawn("stroke-miterlimit", "4", g.number(least=0.0), inherited=True)
-_drawn("vector-effect", "none", g.words("none", "non-scaling-stroke"))
+_drawn("vector-effect", "none", g.words("none non-scaling-stroke"))
 _drawn("marker-start", "none", g.reference, inherited=True)
 _drawn("marker-mid", "none", g.reference, inherited=True)
 _drawn("marker-end", "none", g.reference, inherited=True)
@@ -159,55 +158,56 @@ _drawn("stop-color", "black", g.colour)
 _drawn("stop-opacity", "1", _OPACITY)
 # Clips and masks (CSS Masking 1)
 _drawn("clip-path", "none", g.clip_path)
-_drawn("clip-rule", "nonzero", g.words("nonzero", "evenodd"), inherited=True)
+_drawn("clip-rule", "nonzero", g.words("nonzero evenodd"), inherited=True)
 _drawn("mask", "none", g.anything)
-_drawn("mask-type", "luminance", g.words("luminance", "alpha"))
-_drawn("color-interpolation", "srgb", g.words("auto", "srgb", "linearrgb"), inherited=True)
+_drawn("mask-type", "luminance", g.words("luminance alpha"))
+_drawn("color-interpolation", "srgb", g.words("auto srgb linearrgb"), inherited=True)
 # Text (SVG 2, chapter 11)
 _drawn("font-family", "", g.anything, inherited=True)
 _drawn(
     "font-size",
     "medium",
-    g.length(*["xx-small", "x-small", "small", "medium", "large", "x-large", "xx-large", "xxx-large", "smaller", "larger"], is_signed=False),
+    g.length("xx-small x-small small medium large x-large xx-large xxx-large smaller larger", is_signed=False),
     inherited=True,
 )
 _drawn("font-style", "normal", g.anything, inherited=True)
-_drawn("font-weight", "normal", g.number("normal", "bold", "bolder", "lighter", least=1.0), inherited=True)
+_drawn("font-weight", "normal", g.number("normal bold bolder lighter", least=1.0), inherited=True)
 _drawn("font-stretch", "normal", g.anything, inherited=True)
 _css("line-height", "normal", g.length("normal", is_unitless=True, is_signed=False), inherited=True)
-_drawn("direction", "ltr", g.words("ltr", "rtl"), inherited=True)
+_drawn("direction", "ltr", g.words("ltr rtl"), inherited=True)
 _drawn(
     "unicode-bidi",
     "normal",
-    g.words("normal", "embed", "isolate", "bidi-override", "isolate-override", "plaintext"),
+    g.words("normal embed isolate bidi-override isolate-override plaintext"),
 )
 _drawn(
     "writing-mode",
     "horizontal-tb",
-    g.words(*["horizontal-tb", "vertical-rl", "vertical-lr", "sideways-rl", "sideways-lr", "lr", "lr-tb", "rl", "rl-tb", "tb", "tb-rl"]),
+    g.words("horizontal-tb vertical-rl vertical-lr sideways-rl sideways-lr lr lr-tb rl rl-tb tb tb-rl"),
     inherited=True,
 )
-_css("text-orientation", "mixed", g.words("mixed", "upright", "sideways"), inherited=True)
-_drawn("text-anchor", "start", g.words("start", "middle", "end"), inherited=True)
-_BASELINES = ["auto", "baseline", "before-edge", "text-before-edge", "middle", "central", "after-edge", "text-after-edge", "ideographic", "alphabetic", "hanging", "mathematical"]
+_css("text-orientation", "mixed", g.words("mixed upright sideways"), inherited=True)
+_drawn("text-anchor", "start", g.words("start middle end"), inherited=True)
+_BASELINES = (
+    "auto baseline before-edge text-before-edge middle central after-edge text-after-edge ideographic alphabetic"
+    " hanging mathematical"
+)
 _drawn(
     "dominant-baseline",
     "auto",
-    g.words("use-script", "no-change", "reset-size", *_BASELINES),
+    g.words("use-script no-change reset-size " + _BASELINES),
     inherited=True,
 )
-_drawn("alignment-baseline", "baseline", g.words(*_BASELINES))
-_drawn("baseline-shift", "baseline", g.length("baseline", "sub", "super", is_unitless=True))
+_drawn("alignment-baseline", "baseline", g.words(_BASELINES))
+_drawn("baseline-shift", "baseline", g.length("baseline sub super", is_unitless=True))
 _drawn("letter-spacing", "normal", g.length("normal"), inherited=True)
 _drawn("word-spacing", "normal", g.length("normal"), inherited=True)
 _drawn("text-decoration", "none", g.anything)
-_css(
-    "white-space", "normal", g.words("normal", "pre", "nowrap", "pre-wrap", "pre-line", "break-spaces"), inherited=True
-)
+_css("white-space", "normal", g.words("normal pre nowrap pre-wrap pre-line break-spaces"), inherited=True)
 _css(
     "text-transform",
     "none",
-    g.words("none", "capitalize", "uppercase", "lowercase", "full-size-kana", "math-auto"),
+    g.words("none capitalize uppercase lowercase full-size-kana math-auto"),
     inherited=True,
 )
 # Not honoured

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -17,6 +18,14 @@ _EM = {"em": 1.0, "ex": 0.547, "ch": 0.636, "ic": 1.0, "cap": 0.729, "lh": 1.164
 """Of the font size. What depends on the font is that of DejaVu Sans, which takes the place of missing fonts on many
 systems."""
 _NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
+_OF_PAGE: dict[str, Callable[[float, float], float]] = {
+    "vw": lambda width, height: width,
+    "vi": lambda width, height: width,
+    "vh": lambda width, height: height,
+    "vb": lambda width, height: height,
+    "vmin": min,
+    "vmax": max,
+}
 PLAIN_LENGTH = re.compile(rf"({_NUMBER})([a-zA-Z]*|%)")
 _FONT_RELATIVE = re.compile(rf"(?<![\w.#-])({_NUMBER})(r?(?:em|ex|ch|ic|cap|lh))(?![\w-])", re.IGNORECASE)
 
@@ -86,26 +95,25 @@ class Units:
             return Quantity(value * _DEGREES[unit], "angle")
         if unit in _EM or (unit[0] == "r" and unit[1:] in _EM):
             return Quantity(value * self._font_unit(unit), "length")
-        width, height = self.page
-        of_page = {
-            "vw": width,
-            "vi": width,
-            "vh": height,
-            "vb": height,
-            "vmin": min(width, height),
-            "vmax": max(width, height),
-        }
-        # svw, lvh, dvmin: the small, the large and the dynamic viewport are the same page here; so is a container.
-        plain = "v" + unit[2:] if unit[:2] in ("sv", "lv", "dv", "cq") else unit
-        if plain not in of_page:
+        if not is_length_unit(unit):
             raise NotMathematics(unit)
-        return Quantity(value / 100.0 * of_page[plain], "length")
+        return Quantity(value / 100.0 * _OF_PAGE[_plain(unit)](*self.page), "length")
 
     def _reference(self, axis: Axis) -> float:
         width, height = self.viewport
         if axis == "diagonal":
             return math.sqrt((width * width + height * height) / 2.0)
         return width if axis == "x" else height
+
+
+def is_length_unit(unit: str) -> bool:
+    """Whether it is a unit of length, in lower case."""
+    return unit in _PX or unit in _EM or (unit[:1] == "r" and unit[1:] in _EM) or _plain(unit) in _OF_PAGE
+
+
+def _plain(unit: str) -> str:
+    """`vw` for svw, lvw, dvw and cqw: the small, the large, the dynamic viewport and a container are the page here."""
+    return "v" + unit[2:] if unit[:2] in ("sv", "lv", "dv", "cq") else unit
 
 
 _ANYWHERE = Units(MEDIUM_FONT_PX, MEDIUM_FONT_PX, (100.0, 100.0), (100.0, 100.0))
@@ -115,9 +123,3 @@ def kind_of(text: str) -> Kind | None:
     """Whether text is a number, a length or percentage, or an angle, wherever it stands; None where it is none."""
     quantity = _ANYWHERE.quantity(text, "diagonal")
     return quantity.kind if quantity else None
-
-
-def is_negative(text: str) -> bool:
-    """Whether it is written as a negative number; what is calculated is not refused but clamped."""
-    match = PLAIN_LENGTH.fullmatch(text)
-    return match is not None and float(match[1]) < 0.0
