@@ -37,7 +37,7 @@ _BY_BROWSER: dict[str, dict[str, Declared]] = {
 _OUTERMOST = {"transform-origin": Declared("50% 50%", "", None, None)}
 _TRANSFORMS = {"gradientTransform": "transform", "patternTransform": "transform"}
 _TRANSFORMED = frozenset({"linearGradient", "radialGradient", "pattern"})
-# An attribute of geometry that is no length counts as zero, not as if it had not been there.
+# An attribute of geometry that is no length counts as zero, a negative size as if it had not been there.
 _NOUGHT_WHERE_INVALID = frozenset({"x", "y", "width", "height", "cx", "cy", "r", "rx", "ry"})
 ATTRIBUTE_LAYER: Layer = (-1.0,)
 _STYLE_LAYER: Layer = (*UNLAYERED, 1.0)
@@ -76,7 +76,7 @@ class Cascade:
             said = in_attribute(name, text)
             if said is not None:
                 winners[name] = Declared(said.value, said.shorthand, ATTRIBUTE_LAYER, winners.get(name))
-            elif name in _NOUGHT_WHERE_INVALID:
+            elif name in _NOUGHT_WHERE_INVALID and not text.lstrip().startswith("-"):
                 winners[name] = Declared("0", "", ATTRIBUTE_LAYER, winners.get(name))
         rules = sorted(self._matching(element), key=_strength) if self._buckets else []
         own = parse_style_attribute(attributes["style"]) if "style" in attributes else ()

@@ -7,6 +7,7 @@ counts as if it had not been said.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 
@@ -115,7 +116,9 @@ def length(
     return grammar
 
 
-def number(keywords: str = "", *, least: float = float("-inf"), has_percentage: bool = False) -> Grammar:
+def number(
+    keywords: str = "", *, least: float = -math.inf, most: float = math.inf, has_percentage: bool = False
+) -> Grammar:
     """A plain number as text; percentages as fractions of 1."""
     known = frozenset(keywords.split())
 
@@ -124,7 +127,7 @@ def number(keywords: str = "", *, least: float = float("-inf"), has_percentage: 
         if match and match[2] == "%" and has_percentage:
             return repr(float(match[1]) / 100.0)
         if match and not match[2]:
-            return text if float(text) >= least else None
+            return text if least <= float(text) <= most else None
         if "(" in text and kind_of(text) == "number":
             return text
         lower = text.lower()
@@ -231,6 +234,53 @@ def _is_angle(text: str) -> bool:
     if match and not match[2]:
         return float(text) == 0.0
     return kind_of(text) == "angle"
+
+
+def translate(text: str, _: bool) -> str | None:
+    """`none`, or up to three lengths."""
+    parts = _parts(text)
+    return text.lower() if parts == ["none"] else _all_of(_length, parts, text)
+
+
+def scale(text: str, _: bool) -> str | None:
+    """`none`, or up to three numbers or percentages."""
+    parts = _parts(text)
+    return text.lower() if parts == ["none"] else _all_of(_scale, parts, text)
+
+
+def rotate(text: str, _: bool) -> str | None:
+    """`none`, an angle, or an axis and an angle."""
+    parts = _parts(text)
+    if parts == ["none"]:
+        return "none"
+    angles = [part for part in parts if _is_angle(part)]
+    axis = [part for part in parts if part.lower() in ("x", "y", "z") or _plain(part, False)]
+    return text if len(parts) in (1, 2, 4) and angles and len(axis) >= len(parts) - 1 else None
+
+
+def font_style(text: str, _: bool) -> str | None:
+    parts = _parts(text.lower())
+    is_valid = parts in (["normal"], ["italic"], ["oblique"]) or (
+        len(parts) == 2 and parts[0] == "oblique" and _is_angle(parts[1])
+    )
+    return " ".join(parts) if is_valid else None
+
+
+_STRETCHES = re.compile("normal|(?:ultra-|extra-|semi-)?(?:condensed|expanded)")
+
+
+def font_stretch(text: str, _: bool) -> str | None:
+    match = PLAIN_LENGTH.fullmatch(text)
+    is_valid = _STRETCHES.fullmatch(text.lower()) or (match and match[2] == "%" and float(match[1]) >= 0.0)
+    return text.lower() if is_valid else None
+
+
+def _parts(text: str) -> list[str]:
+    return [text_of([part]) for part in component_values(text)]
+
+
+def _all_of(one: Grammar, parts: list[str], text: str) -> str | None:
+    return text if 1 <= len(parts) <= 3 and all(one(part, False) for part in parts) else None
 
 
 def transform_origin(text: str, is_attribute: bool) -> str | None:

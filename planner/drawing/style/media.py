@@ -10,7 +10,7 @@ import tinycss2
 from tinycss2.ast import Node
 
 from planner.drawing.style.tokens import by_comma, significant, text_of
-from planner.drawing.style.units import MEDIUM_FONT_PX, Units
+from planner.drawing.style.units import units_of_page
 
 Size = tuple[float, float]
 _TYPES = frozenset({"all", "screen"})
@@ -183,4 +183,4 @@ def _value(text: str, page: Size) -> float | None:
     match = _RESOLUTION.fullmatch(text)
     if match:
         return float(match[1]) * _PER_DPPX[match[2].lower()]
-    return Units(MEDIUM_FONT_PX, MEDIUM_FONT_PX, page, page).length(text, "x")
+    return units_of_page(page).length(text, "x")

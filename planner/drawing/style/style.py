@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 from planner.drawing.style.cascade import ATTRIBUTE_LAYER, Cascade, Declared
@@ -12,7 +13,7 @@ from planner.drawing.style.declarations import WIDE_KEYWORDS, has_substitution, 
 from planner.drawing.style.properties import COUNTED, INHERITED, INITIAL, TEXT_ELEMENTS
 from planner.drawing.style.sheet import Sheets
 from planner.drawing.style.shorthands import SHORTHANDS
-from planner.drawing.style.units import MEDIUM_FONT_PX, Axis, Units
+from planner.drawing.style.units import MEDIUM_FONT_PX, Axis, Units, normal_line_height, units_of_page
 from planner.drawing.style.variables import Unresolvable, resolved, substituted
 from planner.drawing.xml_tree import Document, Element
 
@@ -74,6 +75,17 @@ class Style:
     def font_size(self) -> float:
         """In user units."""
         return self._units.font_size
+
+    @property
+    def line_height(self) -> float:
+        """In user units."""
+        text = self["line-height"]
+        if text == "normal":
+            return normal_line_height(self.font_size)
+        quantity = self._units.quantity(text, "y")
+        if quantity is None:
+            return normal_line_height(self.font_size)
+        return quantity.value * self.font_size if quantity.kind == "number" else quantity.value
 
     def __getitem__(self, name: str) -> str:
         """The computed value of a property as text: cascade by origin, importance, specificity and order, `var()`,
@@ -150,8 +162,7 @@ class Styles:
     def root(self, viewport: tuple[float, float]) -> Style:
         """That of what the outermost `svg` inherits from: initial values, with the page as the viewport."""
         page = _Page(Cascade(self._root, self._rules, viewport), viewport)
-        units = Units(MEDIUM_FONT_PX, MEDIUM_FONT_PX, viewport, viewport)
-        return Style(page, None, _NOTHING, _NOTHING, _NOTHING, units)
+        return Style(page, None, _NOTHING, _NOTHING, _NOTHING, units_of_page(viewport))
 
     def of(self, element: Element, parent: Style, viewport: tuple[float, float]) -> Style:
         """That of an element that is shown under something with the style `parent`; `viewport` is the size of the
@@ -167,7 +178,7 @@ def _computed(element: Element, parent: Style, viewport: tuple[float, float]) ->
     declared = parent._styles.cascade.declared(element)
     above = parent._units
     if not declared:
-        units = above if viewport == above.viewport else _with(above, viewport, above.font_size, element)
+        units = _units(element, parent, viewport, above.font_size)
         return Style(parent._styles, element, _NOTHING, parent._inherited, parent._variables, units)
     variables = parent._variables
     said = {name: _winner(name, entry, parent) for name, entry in declared.items() if name[:2] == "--"}
@@ -182,7 +193,7 @@ def _computed(element: Element, parent: Style, viewport: tuple[float, float]) ->
     if "font-size" in values:
         font_size = _font_size(values["font-size"], above)
         values["font-size"] = f"{font_size:.10g}px"
-    units = _with(above, viewport, font_size, element)
+    units = _units(element, parent, viewport, font_size)
     for name in values.keys() & _RECKONED:
         values[name] = _reckoned(name, values[name], parent, units)
     handed_down = {name: value for name, value in values.items() if name in INHERITED}
@@ -193,9 +204,14 @@ def _computed(element: Element, parent: Style, viewport: tuple[float, float]) ->
 _RECKONED = _HANDED_DOWN | _OF_FONT | {"font-weight", "writing-mode", "color"}
 
 
-def _with(above: Units, viewport: tuple[float, float], font_size: float, element: Element) -> Units:
-    root_font_size = font_size if element.parent is None else above.root_font_size
-    return Units(font_size, root_font_size, viewport, above.page)
+def _units(element: Element, parent: Style, viewport: tuple[float, float], font_size: float) -> Units:
+    above = parent._units
+    if element.parent is None:  # `rem` and `rlh` are those of the outermost element
+        return Units(font_size, font_size, above.line_height, normal_line_height(font_size), viewport, above.page)
+    line_height = parent.line_height
+    if (font_size, viewport, line_height) == (above.font_size, above.viewport, above.line_height):
+        return above
+    return Units(font_size, above.root_font_size, line_height, above.root_line_height, viewport, above.page)
 
 
 def _winner(name: str, entry: Declared | None, parent: Style) -> str | None:
@@ -245,8 +261,7 @@ def _font_size(value: str, above: Units) -> float:
         return MEDIUM_FONT_PX * _SIZES[value]
     if value in ("larger", "smaller"):
         return above.font_size * (_STEP if value == "larger" else 1.0 / _STEP)
-    of_font = Units(above.font_size, above.root_font_size, (above.font_size, above.font_size), above.page)
-    size = of_font.length(value, "x")
+    size = replace(above, viewport=(above.font_size, above.font_size)).length(value, "x")
     return above.font_size if size is None else max(size, 0.0)
 
 
