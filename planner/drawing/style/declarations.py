@@ -18,6 +18,7 @@ from planner.drawing.style.shorthands import SHORTHANDS
 from planner.drawing.style.tokens import text_of
 
 WIDE_KEYWORDS = frozenset({"inherit", "initial", "unset", "revert", "revert-layer"})
+_LONGEST_KEYWORD = max(map(len, WIDE_KEYWORDS))
 # What is plain enough to be cut at its semicolons and colons; the rest goes to the parser of CSS.
 _PLAIN = re.compile(r"(?:[^'\"\\{}\[\]!@/()]|\([^'\"\\{}\[\]!@/();]*\))*")
 _COMMENT = re.compile(r"/\*.*?(?:\*/|\Z)", re.DOTALL)
@@ -91,18 +92,22 @@ def valid(name: str, text: str, is_attribute: bool = False) -> str | None:
     row = PROPERTIES.get(name)
     if row is None or row.bearing == "none":
         return None
-    lower = text.lower()
-    if lower in WIDE_KEYWORDS:
-        return lower
+    if len(text) <= _LONGEST_KEYWORD and text.lower() in WIDE_KEYWORDS:
+        return text.lower()
     return row.grammar(text, is_attribute)
 
 
-def in_attribute(name: str, text: str) -> Declaration | None:
+def in_attribute(name: str, text: str) -> str | None:
     """What a presentation attribute declares; None where that is invalid."""
     text = text.strip()
-    if "/*" in text and name != "d":
+    if name == "d":
+        return text
+    if "/*" in text:
         text = _COMMENT.sub(" ", text).strip()
     if "(" in text and has_substitution(text):
-        return Declaration(name, text)
-    value = valid(name, text, is_attribute=True)
-    return None if value is None else Declaration(name, value)
+        return text
+    return valid(name, text, is_attribute=True)
+
+
+in_common_attribute = lru_cache(16384)(in_attribute)
+"""The same for properties whose values repeat."""

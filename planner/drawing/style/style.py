@@ -50,11 +50,11 @@ _OLD_WRITING_MODES = {
 class Style:
     """The computed style of one element in one place of the rendering tree (`use` shows an element in several)."""
 
-    __slots__ = ("_children", "_inherited", "_own", "_plain", "_styles", "_units", "_variables", "element")
+    __slots__ = ("_inherited", "_line_height", "_own", "_page", "_units", "_variables", "element")
 
     def __init__(
         self,
-        styles: _Page,
+        page: _Page,
         element: Element | None,
         own: Mapping[str, str],
         inherited: Mapping[str, str],
@@ -63,13 +63,12 @@ class Style:
     ) -> None:
         """own: what was said of the element; inherited: what it hands down. Both computed."""
         self.element = element
-        self._styles = styles
+        self._page = page
         self._own = own
         self._inherited = inherited
         self._variables = variables
         self._units = units
-        self._children: dict[tuple[Element, tuple[float, float]], Style] = {}
-        self._plain: dict[tuple[float, float], Style] = {}
+        self._line_height: float | None = None
 
     @property
     def font_size(self) -> float:
@@ -79,13 +78,13 @@ class Style:
     @property
     def line_height(self) -> float:
         """In user units."""
-        text = self["line-height"]
-        if text == "normal":
-            return normal_line_height(self.font_size)
-        quantity = self._units.quantity(text, "y")
-        if quantity is None:
-            return normal_line_height(self.font_size)
-        return quantity.value * self.font_size if quantity.kind == "number" else quantity.value
+        if self._line_height is None:
+            quantity = self._units.quantity(self["line-height"], "y")
+            if quantity is None:  # `normal`
+                self._line_height = normal_line_height(self.font_size)
+            else:
+                self._line_height = quantity.value * (self.font_size if quantity.kind == "number" else 1.0)
+        return self._line_height
 
     def __getitem__(self, name: str) -> str:
         """The computed value of a property as text: cascade by origin, importance, specificity and order, `var()`,
@@ -142,11 +141,11 @@ class Style:
 
 
 class _Page:
-    """The cascade on a page of one size."""
+    """The cascade on a page of one size, and the styles that were computed there."""
 
-    def __init__(self, cascade: Cascade, size: tuple[float, float]) -> None:
+    def __init__(self, cascade: Cascade) -> None:
         self.cascade = cascade
-        self.size = size
+        self.styles: dict[tuple[Element, Style, tuple[float, float]], Style] = {}
 
 
 class Styles:
@@ -161,44 +160,50 @@ class Styles:
 
     def root(self, viewport: tuple[float, float]) -> Style:
         """That of what the outermost `svg` inherits from: initial values, with the page as the viewport."""
-        page = _Page(Cascade(self._root, self._rules, viewport), viewport)
+        page = _Page(Cascade(self._root, self._rules, viewport))
         return Style(page, None, _NOTHING, _NOTHING, _NOTHING, units_of_page(viewport))
 
     def of(self, element: Element, parent: Style, viewport: tuple[float, float]) -> Style:
         """That of an element that is shown under something with the style `parent`; `viewport` is the size of the
         nearest viewport in user units, which percentages are of."""
-        key = element, viewport
-        style = parent._children.get(key)
+        key = element, parent, viewport
+        known = parent._page.styles
+        style = known.get(key)
         if style is None:
-            style = parent._children[key] = _computed(element, parent, viewport)
+            style = known[key] = _computed(element, parent, viewport)
         return style
 
 
 def _computed(element: Element, parent: Style, viewport: tuple[float, float]) -> Style:
-    declared = parent._styles.cascade.declared(element)
-    above = parent._units
-    if not declared:
-        units = _units(element, parent, viewport, above.font_size)
-        return Style(parent._styles, element, _NOTHING, parent._inherited, parent._variables, units)
-    variables = parent._variables
-    said = {name: _winner(name, entry, parent) for name, entry in declared.items() if name[:2] == "--"}
-    if said:
-        variables = resolved({name: value for name, value in said.items() if value is not None}, variables)
-        variables = {name: value for name, value in variables.items() if name not in said or said[name] is not None}
+    said = parent._page.cascade.said(element)
+    variables = _custom_properties(said.variables, parent) if said.variables else parent._variables
     values = {}
-    for name, entry in declared.items():
-        if name[:2] != "--":
-            values[name] = _value(name, entry, parent, variables)
-    font_size = above.font_size
+    handed_down = {}
+    for name, entry in said.properties.items():
+        value = entry.value
+        if value in WIDE_KEYWORDS or ("(" in value and name != "d"):
+            value = _value(name, entry, parent, variables)
+        values[name] = value
+    font_size = parent._units.font_size
     if "font-size" in values:
-        font_size = _font_size(values["font-size"], above)
+        font_size = _font_size(values["font-size"], parent._units)
         values["font-size"] = f"{font_size:.10g}px"
     units = _units(element, parent, viewport, font_size)
-    for name in values.keys() & _RECKONED:
-        values[name] = _reckoned(name, values[name], parent, units)
-    handed_down = {name: value for name, value in values.items() if name in INHERITED}
+    for name, value in values.items():
+        if name in _RECKONED:
+            values[name] = value = _reckoned(name, value, parent, units)
+        if name in INHERITED:
+            handed_down[name] = value
     inherited = {**parent._inherited, **handed_down} if handed_down else parent._inherited
-    return Style(parent._styles, element, values, inherited, variables, units)
+    return Style(parent._page, element, values, inherited, variables, units)
+
+
+def _custom_properties(said: Mapping[str, Declared], parent: Style) -> Mapping[str, str]:
+    """Those of the parent with those that are said, variables in them replaced."""
+    given = {name: _winner(name, entry, parent) for name, entry in said.items()}
+    defined = {name: value for name, value in given.items() if value is not None}
+    inherited = {name: value for name, value in parent._variables.items() if name not in given}
+    return resolved(defined, inherited)
 
 
 _RECKONED = _HANDED_DOWN | _OF_FONT | {"font-weight", "writing-mode", "color"}

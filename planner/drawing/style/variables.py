@@ -27,8 +27,8 @@ def substituted(value: str, variables: Mapping[str, str]) -> str:
 
 
 def resolved(variables: Mapping[str, str], inherited: Mapping[str, str]) -> dict[str, str]:
-    """What custom properties come to, with those of the parent; those in a circle are not defined at all."""
-    result = {name: value for name, value in inherited.items() if name not in variables}
+    """What custom properties come to, with others that are inherited; those in a circle are not defined at all."""
+    result = dict(inherited)
     pending = dict(variables)
     while pending:
         _resolve(next(iter(pending)), pending, result, ())
