@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -12,7 +13,7 @@ from planner.arrays import BoolArray, FloatArray, IntArray, frozen
 from planner.drawing.cubics import at, part
 from planner.drawing.cut.crossings import crossings
 from planner.drawing.cut.region import FLATTENING
-from planner.drawing.subpath import Subpath
+from planner.drawing.subpath import Subpath, joined
 
 _REACH = 1e-9
 """How far past a corner, against the extent of the region, an edge still cuts: rounding must not let a line slip
@@ -34,8 +35,8 @@ class Cutter:
     """A region made ready to cut many subpaths.
 
     Curves are cut at the exact parameter: the ends of parts lie on the edge of the region. What runs along the edge
-    counts as inside. A subpath that is not cut comes back as the same object, and a closed one that is stays in one
-    piece over its start point.
+    counts as inside. A subpath that is not cut comes back as the same object, a closed one that is stays in one
+    piece over its start point, and a dash keeps the gap after it where its end is left.
     """
 
     def __init__(self, region: BaseGeometry, slack: float | None = None) -> None:
@@ -118,9 +119,11 @@ class Cutter:
         for index, path in enumerate(subpaths):
             if is_whole[index]:
                 parts[index] = [path]
+            elif path.gap is not None and to_end[index]:
+                parts[index][-1] = replace(parts[index][-1], gap=path.gap)
             elif path.is_closed and from_start[index] and to_end[index]:
                 first_run, *others = parts[index]
-                parts[index] = [*others[:-1], _joined(others[-1], first_run)]
+                parts[index] = [*others[:-1], joined(others[-1], first_run)]
         return parts
 
     def _crossings(self, control: FloatArray) -> tuple[IntArray, FloatArray]:
@@ -151,12 +154,6 @@ class Cutter:
             is_in[out] = shapely.dwithin(self._region, shapely.points(x[out], y[out]), self._slack)
             is_inside &= is_in
         return is_inside
-
-
-def _joined(one: Subpath, other: Subpath) -> Subpath:
-    """Two subpaths of which the second begins where the first ends."""
-    beziers = np.concatenate((one.beziers, other.beziers))
-    return Subpath(frozen(beziers), False, np.concatenate((one.is_vertex, other.is_vertex)))
 
 
 def _edges(region: BaseGeometry) -> FloatArray:
