@@ -33,6 +33,7 @@ _ARGUMENTS = {
 }
 # A line may repeat its letter: where there are millions of commands, most are these.
 _LINES = {letter: re.compile(rf"(?:{letter}\s*)?" + 2 * _NUMBER) for letter in "Ll"}
+_ROUNDING = 1e-13
 Handle = tuple[float, float]
 
 
@@ -213,6 +214,13 @@ class _Reader:
 
     def _close(self) -> None:
         self._begin()
+        reach = abs(self._start_x) + abs(self._start_y) + abs(self._x) + abs(self._y)
+        if self._curves.starts[-1] < len(self._curves.is_line) and (
+            abs(self._x - self._start_x) + abs(self._y - self._start_y) <= _ROUNDING * reach
+        ):
+            # What comes back to its start by sums of relative steps is there but for rounding.
+            self._curves.flat[-2:] = array("d", (self._start_x, self._start_y))
+            self._x, self._y = self._start_x, self._start_y
         self._curves.line(self._x, self._y, self._start_x, self._start_y)
         self._curves.is_closed[-1] = True
         self._x, self._y, self._handle_of = self._start_x, self._start_y, ""

@@ -13,6 +13,7 @@ from planner.drawing.style.style import Axis, Style
 from planner.drawing.subpath import Subpath, polyline
 from planner.drawing.xml_tree import Element
 
+
 def outline_of(element: Element, style: Style) -> list[Subpath]:
     """The subpaths of a shape element, as it was written: segments of zero length and closing ones included. Empty for
     a shape that is not shown, such as a circle without a radius."""

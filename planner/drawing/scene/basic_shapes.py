@@ -27,9 +27,7 @@ class BasicShape:
     is_even_odd: bool = False
 
 
-def basic_shape(
-    text: str, style: Style, viewport: tuple[float, float], bounds: Callable[[], Box]
-) -> BasicShape | None:
+def basic_shape(text: str, style: Style, viewport: tuple[float, float], bounds: Callable[[], Box]) -> BasicShape | None:
     """The shape of a `clip-path` in the user units of the element, whose box `bounds` gives; None where it is none."""
     named = _BOX.search(_FUNCTION.sub("", text) if _FUNCTION.search(text) else text)
     box = _reference_box(named[1].lower() if named else "border-box", style, viewport, bounds)

@@ -19,6 +19,7 @@ from planner.drawing.scene.place import NESTING_LIMIT, Clipped, Inside, Leaf, Pl
 from planner.drawing.scene.references import by_href, by_url
 from planner.drawing.scene.shape import Paint, Shape
 from planner.drawing.scene.walk import Tree, attribute_length, box_of, leaves
+from planner.drawing.shapes import SHAPES
 from planner.drawing.style.colour import parse_url
 from planner.drawing.style.style import Axis, Style
 from planner.drawing.subpath import Subpath
@@ -122,7 +123,12 @@ class Clips:
         x, y, width, height = box()
         if is_of_box and min(width, height) <= 0.0:
             return shapely.Polygon()
-        axes: tuple[tuple[str, Axis, float], ...] = (("x", "x", width), ("y", "y", height), ("width", "x", width), ("height", "y", height))
+        axes: tuple[tuple[str, Axis, float], ...] = (
+            ("x", "x", width),
+            ("y", "y", height),
+            ("width", "x", width),
+            ("height", "y", height),
+        )
         left, top, across, down = (
             attribute_length(
                 style, mask.attributes.get(name, "-10%" if name in "xy" else "120%"), axis, whole if is_of_box else None
@@ -239,4 +245,7 @@ def _painted(shape: Shape) -> Iterable[tuple[Paint, BaseGeometry]]:
         outlines = [Outline(path.beziers) for path in shape.lines]
         polylines = flatten_all(outlines, IDENTITY, _STROKE_ERROR * (extent + shape.stroke.width))
         drawn = [shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0]) for line in polylines]
-        yield shape.stroke.paint, shapely.buffer(shapely.union_all(drawn), shape.stroke.width / 2.0, cap_style="flat", join_style="mitre")
+        yield (
+            shape.stroke.paint,
+            shapely.buffer(shapely.union_all(drawn), shape.stroke.width / 2.0, cap_style="flat", join_style="mitre"),
+        )

@@ -216,9 +216,7 @@ class Painter:
             place = replace(place, clips=(*clips, Clipped(marker, style, place)))
         return place
 
-    def _tiled(
-        self, tiles: Tiles, leaf: Leaf, outline: Sequence[Subpath], clips: tuple[BaseGeometry, ...]
-    ) -> AnyPaint:
+    def _tiled(self, tiles: Tiles, leaf: Leaf, outline: Sequence[Subpath], clips: tuple[BaseGeometry, ...]) -> AnyPaint:
         """Paint the tiles of a fill; what remains to be painted of it, where they are too many to be drawn."""
         from planner.drawing.cut.region import region
 

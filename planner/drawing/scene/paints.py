@@ -31,9 +31,7 @@ def paint_of(
 
 
 class _Mixer:
-    def __init__(
-        self, tree: Tree, style: Style, place: Place, box: Callable[[], Box | None], opacity: float
-    ) -> None:
+    def __init__(self, tree: Tree, style: Style, place: Place, box: Callable[[], Box | None], opacity: float) -> None:
         self._tree, self._style, self._place, self._box, self._opacity = tree, style, place, box, opacity
 
     def paint(self, value: PaintValue) -> AnyPaint:
@@ -50,9 +48,9 @@ class _Mixer:
         if context is None:
             return None
         element, style, place = context.element, context.style, context.place
-        return _Mixer(
-            self._tree, style, place, lambda: box_of(self._tree, element, style, place), self._opacity
-        ).paint(style.paint(kind))
+        return _Mixer(self._tree, style, place, lambda: box_of(self._tree, element, style, place), self._opacity).paint(
+            style.paint(kind)
+        )
 
     def _seen(self, colours: list[Rgba]) -> Paint | None:
         """A paint of one or more colours, in the mean of them; None where all of them are transparent."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +34,7 @@ class Tiles:
     to_tile: FloatArray
     viewport: tuple[float, float]
 
-    def over(self, box: Box) -> Iterator[FloatArray] | None:
+    def over(self, box: Box) -> list[FloatArray] | None:
         """The moves (2, 3), in user units, that bring the tile to where it covers a box in user units; None where they
         are too many."""
         x, y, width, height = moved_box(box, inverse(self.to_user))
@@ -45,9 +44,7 @@ class Tiles:
         if len(columns) * len(rows) > TILE_LIMIT:
             return None
         linear = self.to_user[:, :2]
-        return (
-            translation(*(linear @ (column * step_x, row * step_y)).tolist()) for row in rows for column in columns
-        )
+        return [translation(*(linear @ (column * step_x, row * step_y)).tolist()) for row in rows for column in columns]
 
 
 def tiles_of(tree: Tree, pattern: Element, style: Style, place: Place, box: Box) -> Tiles | None:
@@ -100,4 +97,3 @@ def _transform(tree: Tree, patterns: list[Element], place: Place, box: Box) -> F
         if "patternTransform" in pattern.attributes or style["transform"] != "none":
             return local_transform(style, place.viewport, lambda: box)
     return IDENTITY
-
