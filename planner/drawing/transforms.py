@@ -19,7 +19,7 @@ from planner.drawing.style.style import Axis, Style
 Box = tuple[float, float, float, float]
 """x, y, width, height."""
 IDENTITY = frozen([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = r"(?>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
 _CALL = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
 _FUNCTION = re.compile(rf"\s*,?\s*([a-zA-Z0-9]+)\s*({_CALL})\s*")
 _ARGUMENT = re.compile(rf"\s*({_NUMBER}[a-zA-Z%]*|[a-z]+{_CALL})\s*,?\s*")

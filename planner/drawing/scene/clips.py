@@ -148,22 +148,14 @@ class Clips:
         if has_greys:
             self._tree.work.skipped["mask with greys"] += 1
         frame = window_region(Window((left, top, across, down), place.to_user))
-        own = [
-            found
-            for found in (
-                self._of_clip_path(style["clip-path"], style, replace(place, inside=inner.inside), box),
-                self._of_mask(style["mask"], replace(place, inside=inner.inside), box),
-            )
-            if found is not None
-        ]
-        return shapely.intersection_all([area, frame, *own])
+        return shapely.intersection(area, frame)
 
     def _resource(self, url: str, tag: str, place: Place) -> Element | None:
         """The element that clips, unless something clips itself by it."""
         if not url.startswith("#"):
             self._tree.work.skipped["external reference"] += 1
         found = by_url(self._tree.document, url, tag)
-        if found is None:
+        if found is None or not self._tree.is_rendered(found):
             return None
         if place.inside is not None and place.inside.holds(found):
             self._tree.work.skipped["reference to itself"] += 1

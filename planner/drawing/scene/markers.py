@@ -11,6 +11,7 @@ import numpy as np
 from planner.drawing.subpath import Subpath
 
 Vector = tuple[float, float]
+_SAME_ANGLE_DEG = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +37,8 @@ class _Corner:
         if self.coming is None or self.going is None:
             return _angle_deg(self.going or self.coming or (0.0, 0.0))
         first, second = _angle_deg(self.coming), _angle_deg(self.going)
+        if abs(abs(first - second) - 180.0) < _SAME_ANGLE_DEG:  # straight back: no side is between the two
+            return first
         if abs(first - second) > 180.0:
             first += 360.0
         return (first + second) / 2.0
@@ -60,7 +63,7 @@ def _corners(subpath: Subpath) -> list[_Corner]:
         corners[-1].going = _tangent(subpath.beziers[first].tolist())
         backwards = _tangent(subpath.beziers[end, ::-1].tolist())
         x, y = subpath.beziers[end, 3].tolist()
-        corners.append(_Corner((x, y), (-backwards[0], -backwards[1]), None))
+        corners.append(_Corner((x, y), (0.0 - backwards[0], 0.0 - backwards[1]), None))
         first = end + 1
     if subpath.is_closed and len(corners) > 1:
         corners[0].coming, corners[-1].going = corners[-1].coming, corners[0].going

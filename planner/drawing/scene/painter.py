@@ -178,7 +178,7 @@ class Painter:
         if place.nesting >= NESTING_LIMIT:
             self._tree.work.skipped["references nested too deeply"] += 1
             return False
-        return True
+        return self._tree.is_rendered(resource)
 
     def _marker_place(self, marker: Element, leaf: Leaf, vertex: Vertex) -> Place | None:
         """The place of what a marker shows at a vertex; None where nothing of it can be seen."""

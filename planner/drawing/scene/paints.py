@@ -57,7 +57,7 @@ class _Mixer:
         alphas = np.array([colour.alpha for colour in colours])
         if alphas.max(initial=0.0) <= 0.0:
             return None
-        red, green, blue = np.average([(one.red, one.green, one.blue) for one in colours], axis=0, weights=alphas)
+        red, green, blue = np.mean([(one.red, one.green, one.blue) for one in colours], axis=0)
         colour = (round(float(red)), round(float(green)), round(float(blue)))
         return Paint(colour, bool(self._opacity >= 1.0 and alphas.min() >= 1.0))
 
@@ -66,7 +66,7 @@ class _Mixer:
         if target is None and not value.url.startswith("#"):
             self._tree.work.skipped["external reference"] += 1
         fallback = self.paint(value.fallback) if value.fallback is not None else None
-        if target is None:
+        if target is None or not self._tree.is_rendered(target):
             return fallback
         box = self._box()
         if target.tag == "pattern":

@@ -45,6 +45,15 @@ class Tree:
             known = self.document_styles[element] = self.styles.of(element, above, self.root.viewport)
         return known
 
+    def is_rendered(self, resource: Element) -> bool:
+        """Whether an element that is shown by reference can be: not where `display` takes away it, or what it is in."""
+        at: Element | None = resource
+        while at is not None:
+            if self.style_of(at)["display"] == "none":
+                return False
+            at = at.parent
+        return True
+
 
 def leaves(tree: Tree, elements: Iterable[Element], place: Place) -> Iterator[Leaf]:
     """The elements in and under `elements` that show something themselves, in the order of painting."""
