@@ -69,7 +69,6 @@ class Character:
     u: float = 0.0
     v: float = 0.0
     advance: float = 0.0
-    spacing: float = 0.0
     stretch: float = 1.0
     rise: float = 0.0
 

@@ -34,7 +34,7 @@ def _fitted(character: Character, face: Face, letter: str) -> list[Subpath]:
     metrics = character.font.metrics if character.font is not None else None
     up = character.size * (metrics.cap_height if metrics is not None else 0.73) / face.cap_height
     advance = sum(one.advance for one in character.glyphs) * character.size
-    x, y = character.spacing, 0.0
+    x, y = 0.0, 0.0
     if character.is_upright:
         first = character.glyphs[0].offset
         advance, x, y = -2.0 * first[0] * character.size, first[0] * character.size, first[1] * character.size
@@ -53,7 +53,7 @@ def outlines(character: Character) -> list[Subpath]:
     if character.font is None:
         return []
     drawn: list[Subpath] = []
-    pen, size = character.spacing, character.size
+    pen, size = 0.0, character.size
     for glyph in character.glyphs:
         x, y = pen + glyph.offset[0] * size, glyph.offset[1] * size
         drawn += _moved(character.font.outline(glyph.glyph), np.array([[size, 0.0, x], [0.0, size, y]]))

@@ -131,7 +131,6 @@ def _adjust(text: Text, span: Span, length: float, inner: list[Span], order: lis
             one.u = left + (one.u - left) * factor
             one.advance *= factor
             one.stretch *= factor
-            one.spacing *= factor
         begin = next(place for place, index in enumerate(order) if span.first <= index < span.stop)
         for index in order[begin:]:
             if not span.first <= index < span.stop:

@@ -91,7 +91,6 @@ def _shape_run(
             if character.text in " \u00a0":
                 spacing += character.span.style.length("word-spacing", "x") or 0.0
             character.advance += spacing
-            character.spacing = spacing if is_rtl else 0.0
 
 
 def _font(character: Character, options: ReadingOptions) -> Font | None:
