@@ -21,7 +21,8 @@ from planner.drawing.scene.shape import Paint, Shape
 from planner.drawing.scene.walk import Tree, attribute_length, box_of, leaves
 from planner.drawing.shapes import SHAPES
 from planner.drawing.style.colour import parse_url
-from planner.drawing.style.style import Axis, Style
+from planner.drawing.style.style import Style
+from planner.drawing.style.units import Axis
 from planner.drawing.subpath import Subpath
 from planner.drawing.transforms import IDENTITY, Box, local_transform, scaling, translation
 from planner.drawing.xml_tree import Element
@@ -170,7 +171,8 @@ class _Lazy:
     """A box that is worked out when it is asked for first."""
 
     def __init__(self, make: Callable[[], Box]) -> None:
-        self._make, self._made = make, None
+        self._make = make
+        self._made: Box | None = None
 
     def __call__(self) -> Box:
         if self._made is None:
@@ -212,7 +214,8 @@ def _seen_through(shapes: Sequence[Shape], is_luminance: bool) -> tuple[BaseGeom
     """Where a mask lets anything through, and whether anywhere it does so in part only."""
     import shapely
 
-    area, has_greys = shapely.Polygon(), False
+    area: BaseGeometry = shapely.Polygon()
+    has_greys = False
     for shape in shapes:
         for paint, painted in _painted(shape):
             painted = shapely.intersection_all([painted, *shape.clips])

@@ -59,7 +59,7 @@ def _corners(subpath: Subpath) -> list[_Corner]:
     (start, *_), ends = subpath.beziers[0].tolist(), np.flatnonzero(subpath.is_vertex)
     corners = [_Corner((start[0], start[1]), None, None)]
     first = 0
-    for end in ends:
+    for end in ends.tolist():
         corners[-1].going = _tangent(subpath.beziers[first].tolist())
         backwards = _tangent(subpath.beziers[end, ::-1].tolist())
         x, y = subpath.beziers[end, 3].tolist()

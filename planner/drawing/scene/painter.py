@@ -12,11 +12,12 @@ import numpy as np
 from planner.affine import compose, rotation
 from planner.arrays import FloatArray
 from planner.drawing.path_data import has_foreign_characters, has_unusable_numbers
-from planner.drawing.scene.boxes import box_of_subpaths, corners_of, moved_box
+from planner.drawing.scene.boxes import box_of_subpaths, moved_box
 from planner.drawing.scene.clips import Clips, resource_place, window_region
 from planner.drawing.scene.images import picture_of
+from planner.drawing.scene.lettering import glyphs_of
 from planner.drawing.scene.markers import Vertex, vertices
-from planner.drawing.scene.paints import AnyPaint, paint_of
+from planner.drawing.scene.paints import paint_of
 from planner.drawing.scene.patterns import Tiles
 from planner.drawing.scene.place import NESTING_LIMIT, Clipped, Leaf, Place, Window
 from planner.drawing.scene.references import by_url
@@ -26,7 +27,6 @@ from planner.drawing.scene.viewport import fitted, parse_view_box
 from planner.drawing.scene.walk import Tree, attribute_length, hides_overflow, leaves
 from planner.drawing.shapes import SHAPES, outline_of, rectangle
 from planner.drawing.style.colour import parse_url
-from planner.drawing.style.style import Style
 from planner.drawing.subpath import Subpath
 from planner.drawing.transforms import IDENTITY, parse_angle, scaling, translation
 from planner.drawing.xml_tree import Element
@@ -77,14 +77,14 @@ class Painter:
         outline = self._outlines(leaf)
         if not outline:
             return
-        self._outline(leaf, outline)
+        self._outline(leaf, outline, outline)
         if leaf.element.tag in _HAS_MARKERS:
             self._markers(leaf, outline)
 
     def _outlines(self, leaf: Leaf) -> Sequence[Subpath]:
-        """The outline of a shape, its numbers looked at and counted."""
+        """The outline of a shape or of a text, its numbers looked at and counted."""
         if leaf.element.tag == "text":
-            return []
+            return [path for run in glyphs_of(self._tree, leaf, is_area=True) for path in run.subpaths]
         if leaf.element.tag == "path":
             data = leaf.style["d"]
             if has_unusable_numbers(data):
@@ -93,17 +93,16 @@ class Painter:
             if has_foreign_characters(data):
                 self._tree.work.skipped["path with unreadable data"] += 1
         outline = outline_of(leaf.element, leaf.style)
-        self._tree.work.subpaths(len(outline), sum(len(path.beziers) for path in outline))
+        self._count(outline)
         return outline
 
-    def _outline(self, leaf: Leaf, outline: Sequence[Subpath]) -> None:
+    def _outline(self, leaf: Leaf, outline: Sequence[Subpath], whole: Sequence[Subpath]) -> None:
+        """An outline with fill and stroke; `whole` is what the box of its paints is around."""
         style, place = leaf.style, leaf.place
-
-        def box() -> tuple[float, float, float, float] | None:
-            return box_of_subpaths(outline)
-
-        fill = paint_of(self._tree, "fill", style, place, box) if leaf.element.tag != "line" else None
-        stroke = self._stroke(leaf, box)
+        fill = None
+        if leaf.element.tag != "line":
+            fill = paint_of(self._tree, "fill", style, place, lambda: box_of_subpaths(whole))
+        stroke = self._stroke(leaf, whole)
         if fill is None and stroke is None:
             return
         clips = self._clips.regions(place.clips)
@@ -123,7 +122,7 @@ class Painter:
                 tuple(moved[path] for path in drawn if path in moved),
                 tuple(moved[path] for path in lines if path in moved),
                 fill,
-                style["fill-rule"] == "evenodd",
+                _is_even_odd(leaf),
                 stroke,
                 clips,
                 place.layer,
@@ -142,9 +141,11 @@ class Painter:
                 self._tree.work.skipped["path with unusable numbers"] += 1
         return moved
 
-    def _stroke(self, leaf: Leaf, box: object) -> Stroke | None:
+    def _stroke(self, leaf: Leaf, whole: Sequence[Subpath]) -> Stroke | None:
         width = leaf.style.length("stroke-width", "diagonal") or 0.0
-        paint = paint_of(self._tree, "stroke", leaf.style, leaf.place, box) if width > 0.0 else None
+        if width <= 0.0:
+            return None
+        paint = paint_of(self._tree, "stroke", leaf.style, leaf.place, lambda: box_of_subpaths(whole))
         if paint is None:
             return None
         to_user = leaf.place.to_user
@@ -216,7 +217,9 @@ class Painter:
             place = replace(place, clips=(*clips, Clipped(marker, style, place)))
         return place
 
-    def _tiled(self, tiles: Tiles, leaf: Leaf, outline: Sequence[Subpath], clips: tuple[BaseGeometry, ...]) -> AnyPaint:
+    def _tiled(
+        self, tiles: Tiles, leaf: Leaf, outline: Sequence[Subpath], clips: tuple[BaseGeometry, ...]
+    ) -> Paint | None:
         """Paint the tiles of a fill; what remains to be painted of it, where they are too many to be drawn."""
         from planner.drawing.cut.region import region
 
@@ -234,7 +237,7 @@ class Painter:
             self._tree.work.skipped["pattern of too many tiles"] += 1
             return _BLACK
         self._tree.work.subpaths(n_subpaths * len(moves), 0)
-        whole = region(list(self._moved(outline, place.to_user).values()), leaf.style["fill-rule"] == "evenodd")
+        whole = region(list(self._moved(outline, place.to_user).values()), _is_even_odd(leaf))
         frame = window_region(Window(tiles.tile, tiles.to_user))
         is_held = [_is_within(shape, tiles) for shape in content]
         for move in moves:
@@ -270,8 +273,34 @@ class Painter:
         self._tree.work.skipped[picture.kind] += 1
 
     def _text(self, leaf: Leaf) -> None:
-        if any(element.text.strip() for element in leaf.element.descendants()):
-            self._tree.work.skipped["text"] += 1
+        runs = glyphs_of(self._tree, leaf, is_area=self._is_mask)
+        whole = [path for run in runs for path in run.subpaths]
+        self._count(whole)
+        for run in runs:
+            part = replace(leaf, style=run.style)
+            if run.is_single_line:
+                self._single_lines(part, run.subpaths, whole)
+            else:
+                self._outline(part, run.subpaths, whole)
+
+    def _single_lines(self, leaf: Leaf, lines: Sequence[Subpath], whole: Sequence[Subpath]) -> None:
+        """Letters without an inside: a pen writes them wherever either of their paints can be seen."""
+        stroke = self._stroke(leaf, whole)
+        fill = paint_of(self._tree, "fill", leaf.style, leaf.place, lambda: box_of_subpaths(whole))
+        paint = stroke.paint if fill is None and stroke is not None else fill
+        if paint is None:
+            return
+        moved = tuple(self._moved(lines, leaf.place.to_user).values())
+        pen = Stroke(paint if isinstance(paint, Paint) else _BLACK, 0.0)
+        clips = self._clips.regions(leaf.place.clips)
+        self._shapes.append(Shape((), moved, None, False, pen, clips, leaf.place.layer))
+
+    def _count(self, paths: Sequence[Subpath]) -> None:
+        self._tree.work.subpaths(len(paths), sum(len(path.beziers) for path in paths))
+
+
+def _is_even_odd(leaf: Leaf) -> bool:
+    return leaf.element.tag != "text" and leaf.style["fill-rule"] == "evenodd"
 
 
 def _scale(affine: FloatArray) -> float:

@@ -14,7 +14,8 @@ from planner.drawing.scene.place import Place
 from planner.drawing.scene.references import chain, inherited_attribute
 from planner.drawing.scene.viewport import fitted, parse_view_box
 from planner.drawing.scene.walk import Tree, attribute_length
-from planner.drawing.style.style import Axis, Style
+from planner.drawing.style.style import Style
+from planner.drawing.style.units import Axis
 from planner.drawing.transforms import IDENTITY, Box, local_transform, scaling, translation
 from planner.drawing.xml_tree import Element
 

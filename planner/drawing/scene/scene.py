@@ -14,8 +14,8 @@ from planner.drawing.scene.page import FALLBACK, OwnSize, Page, own_size, page_o
 from planner.drawing.scene.painter import Painter
 from planner.drawing.scene.place import Clipped, Inside, Leaf, Place, Work
 from planner.drawing.scene.shape import Scene, Shape
-from planner.drawing.scene.walk import Tree, leaves
 from planner.drawing.scene.viewport import parse_view_box
+from planner.drawing.scene.walk import Tree, leaves
 from planner.drawing.style.style import Styles
 from planner.drawing.transforms import IDENTITY
 from planner.drawing.xml_tree import Document, Element
