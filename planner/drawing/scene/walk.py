@@ -182,6 +182,12 @@ def _on_layer(group: Element, place: Place) -> Place:
     return place if place.layer or place.has_layer else replace(place, layer=name)
 
 
+def _viewport_box(style: Style) -> tuple[float, float, float | None, float | None]:
+    """x, y, width and height of an `svg`, None for what is as large as the viewport around it."""
+    x, y = style.length("x", "x") or 0.0, style.length("y", "y") or 0.0
+    return x, y, style.length("width", "x"), style.length("height", "y")
+
+
 def in_viewport(
     element: Element, style: Style, place: Place, x: float, y: float, width: float | None, height: float | None
 ) -> Place | None:
