@@ -14,8 +14,8 @@ from planner.drawing.cut.region import region
 from planner.drawing.drawing import Outline
 from planner.drawing.flatten import flatten_all
 from planner.drawing.scene.basic_shapes import basic_shape
-from planner.drawing.scene.boxes import corners_of
-from planner.drawing.scene.place import NESTING_LIMIT, Clipped, Inside, Leaf, Place, Window
+from planner.drawing.scene.boxes import window_region
+from planner.drawing.scene.place import NESTING_LIMIT, Clipped, Leaf, Place, Window, resource_place
 from planner.drawing.scene.references import by_href, by_url
 from planner.drawing.scene.shape import Paint, Shape
 from planner.drawing.scene.walk import Tree, attribute_length, box_of, leaves
@@ -178,28 +178,6 @@ class _Lazy:
         if self._made is None:
             self._made = self._make()
         return self._made
-
-
-def resource_place(
-    element: Element, style: Style, place: Place, to_user: FloatArray, viewport: tuple[float, float]
-) -> Place:
-    """The place of what an element shows only where another one, at `place`, refers to it."""
-    depth = place.inside.depth + 1 if place.inside else 1
-    return Place(
-        to_user,
-        style,
-        viewport,
-        layer=place.layer,
-        has_layer=True,
-        inside=Inside(element, place.inside, depth),
-        nesting=place.nesting + 1,
-    )
-
-
-def window_region(window: Window) -> BaseGeometry:
-    import shapely
-
-    return shapely.Polygon(corners_of(window.box, window.to_user))
 
 
 def finite(subpaths: Iterable[Subpath]) -> list[Subpath]:
