@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
-from planner.drawing.options import ReadingOptions
+from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.drawing.outlines import outlines
 from planner.drawing.scene.scene import read_scene
 from planner.drawing.shapes import SHAPES
@@ -29,7 +29,7 @@ def read_drawing(
     svg: DrawingSource,
     report: Callable[[int, int], None] = lambda done, total: None,
     *,
-    options: ReadingOptions = ReadingOptions(),
+    options: ReadingOptions = AS_A_BROWSER,
 ) -> Drawing:
     """All visible outlines of an SVG, a file or in memory, gzipped or not, with the page they are on.
 
@@ -49,7 +49,7 @@ def read_drawing(
     if not drawn:
         raise DrawingError(source, _nothing_drawable(document, skipped))
     report(_STEPS, _STEPS)
-    return Drawing(source, drawn, scene.user_to_page, scene.page_mm, skipped)
+    return Drawing(source, drawn, scene.user_to_page, scene.page_mm, skipped, scene, options)
 
 
 def _nothing_drawable(document: Document, skipped: Mapping[str, int]) -> str:
