@@ -27,9 +27,11 @@ def filled(lines: Sequence[FloatArray], is_even_odd: bool) -> BaseGeometry:
     faces = shapely.get_parts(shapely.polygonize([shapely.unary_union([shapely.LineString(ring) for ring in rings])]))
     kept = []
     for face in faces:
+        if face.area <= _NOTHING * face.length**2:  # a sliver, of which no point is surely inside
+            continue
         inner = np.array(face.representative_point().coords[0])
         turns = sum(_turns(ring - inner) for ring in rings)
-        if face.area > _NOTHING * face.length**2 and (turns % 2 != 0 if is_even_odd else turns != 0):
+        if turns % 2 != 0 if is_even_odd else turns != 0:
             kept.append(face)
     return shapely.union_all(kept) if kept else shapely.Polygon()
 

@@ -24,7 +24,9 @@ from planner.drawing.scene.shape import Scene, Shape
 
 _SHORTEST_GAP_MM = 0.5
 _ROUNDING = 1e-4
-_EXACT_MM = 1e-5
+_EXACT_MM = 1e-7
+_CRUMB_MM = 0.02
+"""A cut may leave as much of a line that a region only touches."""
 _PAPER = 1e-3
 """By so much of the page a rectangle may be smaller, and still is paper."""
 
@@ -60,7 +62,7 @@ class _Cuts:
         self._affine, self._chord_mm, self._is_generous = affine, chord_mm, is_generous
         along_mm = 2.0 * chord_mm
         self._shown_mm, self._hidden_mm = (along_mm, _EXACT_MM) if is_generous else (_EXACT_MM, along_mm)
-        self._crumb_mm = 0.0 if is_generous else 2.0 * along_mm
+        self._crumb_mm = 0.0 if is_generous else _CRUMB_MM
         self._known: dict[int, BaseGeometry] = {}
         self.has_cut = False
 
