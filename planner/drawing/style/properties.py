@@ -229,8 +229,10 @@ _counted("mask-border", "none", "mask border")
 _counted("border", "none", "border", "0", "0px", tags=_OUTERMOST)
 _counted("outline", "none", "border", "0", "0px", tags=_OUTERMOST)
 _counted("padding", "0", "padding", "0px", tags=_OUTERMOST)
-_counted("font-variant", "normal", "font variant", "none", elements=ANY, inherited=True, tags=TEXT_ELEMENTS)
-_counted("font-variant-caps", "normal", "font variant", inherited=True, tags=TEXT_ELEMENTS)
+_counted(
+    "font-variant", "normal", "font variant", "none", "small-caps", elements=ANY, inherited=True, tags=TEXT_ELEMENTS
+)
+_counted("font-variant-caps", "normal", "font variant", "small-caps", inherited=True, tags=TEXT_ELEMENTS)
 _counted("font-variant-position", "normal", "font variant", inherited=True, tags=TEXT_ELEMENTS)
 _counted("font-size-adjust", "none", "font-size-adjust", inherited=True, tags=TEXT_ELEMENTS)
 _counted("text-combine-upright", "none", "text-combine-upright", inherited=True, tags=TEXT_ELEMENTS)

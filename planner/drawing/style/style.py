@@ -49,19 +49,22 @@ _OLD_WRITING_MODES = {
 class Style:
     """The computed style of one element in one place of the rendering tree (`use` shows an element in several)."""
 
-    __slots__ = ("_children", "_inherited", "_own", "_plain", "_styles", "_units", "_variables", "element")
+    __slots__ = ("_children", "_inherited", "_own", "_plain", "_styles", "_units", "_variables", "element", "parent")
 
     def __init__(
         self,
         styles: _Page,
         element: Element | None,
+        parent: Style | None,
         own: Mapping[str, str],
         inherited: Mapping[str, str],
         variables: Mapping[str, str],
         units: Units,
     ) -> None:
-        """own: what was said of the element; inherited: what it hands down. Both computed."""
+        """parent: that of what the element is shown under. own: what was said of it; inherited: what it hands down, both
+        computed."""
         self.element = element
+        self.parent = parent
         self._styles = styles
         self._own = own
         self._inherited = inherited
@@ -151,7 +154,7 @@ class Styles:
         """That of what the outermost `svg` inherits from: initial values, with the page as the viewport."""
         page = _Page(Cascade(self._root, self._rules, viewport), viewport)
         units = Units(MEDIUM_FONT_PX, MEDIUM_FONT_PX, viewport, viewport)
-        return Style(page, None, _NOTHING, _NOTHING, _NOTHING, units)
+        return Style(page, None, None, _NOTHING, _NOTHING, _NOTHING, units)
 
     def of(self, element: Element, parent: Style, viewport: tuple[float, float]) -> Style:
         """That of an element that is shown under something with the style `parent`; `viewport` is the size of the
@@ -168,7 +171,7 @@ def _computed(element: Element, parent: Style, viewport: tuple[float, float]) ->
     above = parent._units
     if not declared:
         units = above if viewport == above.viewport else _with(above, viewport, above.font_size, element)
-        return Style(parent._styles, element, _NOTHING, parent._inherited, parent._variables, units)
+        return Style(parent._styles, element, parent, _NOTHING, parent._inherited, parent._variables, units)
     variables = parent._variables
     said = {name: _winner(name, entry, parent) for name, entry in declared.items() if name[:2] == "--"}
     if said:
@@ -187,7 +190,7 @@ def _computed(element: Element, parent: Style, viewport: tuple[float, float]) ->
         values[name] = _reckoned(name, values[name], parent, units)
     handed_down = {name: value for name, value in values.items() if name in INHERITED}
     inherited = {**parent._inherited, **handed_down} if handed_down else parent._inherited
-    return Style(parent._styles, element, values, inherited, variables, units)
+    return Style(parent._styles, element, parent, values, inherited, variables, units)
 
 
 _RECKONED = _HANDED_DOWN | _OF_FONT | {"font-weight", "writing-mode", "color"}

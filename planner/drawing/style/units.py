@@ -34,7 +34,8 @@ class Units:
         """A length, a percentage or an expression; a plain number is in user units. None where it is none of these."""
         match = PLAIN_LENGTH.fullmatch(text)
         if match and not match[2]:
-            return float(match[1])
+            value = float(match[1])
+            return value if math.isfinite(value) else None
         quantity = self.quantity(text, axis)
         return quantity.value if quantity and quantity.kind in ("length", "number") else None
 
