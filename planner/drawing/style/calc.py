@@ -9,6 +9,8 @@ from typing import Literal
 
 from tinycss2.ast import Node
 
+from planner.drawing.style.tokens import by_comma, significant
+
 Kind = Literal["number", "length", "angle"]
 
 
@@ -29,12 +31,17 @@ Resolve = Callable[[float, str], Quantity]
 _CONSTANTS = {"e": math.e, "pi": math.pi, "infinity": math.inf, "-infinity": -math.inf, "nan": math.nan}
 _OF_ANGLES = {"sin": math.sin, "cos": math.cos, "tan": math.tan}
 _TO_ANGLES = {"asin": math.asin, "acos": math.acos, "atan": math.atan}
-_OF_NUMBERS = {"sqrt": math.sqrt, "exp": math.exp, "pow": math.pow, "log": math.log}
+_OF_NUMBERS: dict[str, Callable[..., float]] = {"sqrt": math.sqrt, "exp": math.exp, "pow": math.pow, "log": math.log}
 _ALIKE = frozenset({"min", "max", "clamp", "hypot", "mod", "rem", "round"})
 FUNCTIONS = (
     frozenset({"calc", "-webkit-calc", "abs", "sign", "atan2"}) | _ALIKE | {*_OF_ANGLES, *_TO_ANGLES, *_OF_NUMBERS}
 )
-_STEPS = {"nearest": lambda x: math.floor(x + 0.5), "up": math.ceil, "down": math.floor, "to-zero": math.trunc}
+_STEPS: dict[str, Callable[[float], float]] = {
+    "nearest": lambda x: math.floor(x + 0.5),
+    "up": math.ceil,
+    "down": math.floor,
+    "to-zero": math.trunc,
+}
 
 
 def evaluate(token: Node, resolve: Resolve) -> Quantity:
@@ -98,14 +105,9 @@ def _product(tokens: Sequence[Node], resolve: Resolve) -> Quantity:
 
 
 def _function(name: str, arguments: Sequence[Node], resolve: Resolve) -> Quantity:
-    groups: list[list[Node]] = [[]]
-    for token in arguments:
-        if token == ",":
-            groups.append([])
-        else:
-            groups[-1].append(token)
+    groups = by_comma(arguments)
     step = "nearest"
-    words = [token for token in groups[0] if token.type not in ("whitespace", "comment")]
+    words = significant(groups[0])
     if name == "round" and len(words) == 1 and words[0].type == "ident" and words[0].lower_value in _STEPS:
         step = words[0].lower_value
         del groups[0]

@@ -12,6 +12,8 @@ import tinycss2
 import tinycss2.color5
 from tinycss2.ast import Node
 
+from planner.drawing.style.tokens import by_comma, component_values, significant
+
 
 @dataclass(frozen=True, slots=True)
 class Rgba:
@@ -76,7 +78,7 @@ def parse_colour(text: str) -> Rgba | Literal["currentcolor"] | None:
 
 def parse_url(text: str) -> str | None:
     """What stands in a url(); None where text is not just that."""
-    tokens = _significant(tinycss2.parse_component_value_list(text))
+    tokens = component_values(text)
     return _url(tokens[0]) if len(tokens) == 1 else None
 
 
@@ -88,7 +90,7 @@ def fragment(url: str) -> str | None:
 
 @lru_cache(4096)
 def _paint(text: str) -> PaintValue | None:
-    tokens = _significant(tinycss2.parse_component_value_list(text))
+    tokens = component_values(text)
     if not tokens:
         return None
     url = _url(tokens[0])
@@ -121,7 +123,7 @@ def _plain_paint(tokens: Sequence[Node]) -> PaintValue | None:
 
 @lru_cache(4096)
 def _colour(text: str) -> Rgba | Literal["currentcolor"] | None:
-    tokens = _significant(tinycss2.parse_component_value_list(text))
+    tokens = component_values(text)
     return _from_token(tokens[0]) if len(tokens) == 1 else None
 
 
@@ -133,7 +135,7 @@ def _from_token(token: Node) -> Rgba | Literal["currentcolor"] | None:
     if token.type == "function":
         if token.lower_name == "color-mix":
             return _mixed(token.arguments)
-        arguments = _significant(token.arguments)
+        arguments = significant(token.arguments)
         if arguments and arguments[0] == "from":  # relative to another colour, which is near enough for a pen
             return _from_token(arguments[1]) if len(arguments) > 1 else None
         if token.lower_name == "device-cmyk":
@@ -148,17 +150,14 @@ def _from_token(token: Node) -> Rgba | Literal["currentcolor"] | None:
         found = tinycss2.color5.parse_color(token)
     except (ValueError, AttributeError, IndexError, TypeError):  # an empty or a strange function
         return None
-    return found if found is None or isinstance(found, str) else _srgb(found)
+    if found is None:
+        return None
+    return "currentcolor" if isinstance(found, str) else _srgb(found)
 
 
 def _mixed(arguments: Sequence[Node]) -> Rgba | Literal["currentcolor"] | None:
     """color-mix(in SPACE, COLOUR P%, COLOUR P%), mixed in sRGB whatever the space."""
-    groups: list[list[Node]] = [[]]
-    for token in _significant(arguments):
-        if token == ",":
-            groups.append([])
-        else:
-            groups[-1].append(token)
+    groups = by_comma(significant(arguments))
     if len(groups) != 3:
         return None
     colours: list[Rgba] = []
@@ -218,10 +217,6 @@ def _url(token: Node) -> str | None:
     if token.type == "url":
         return str(token.value)
     if token.type == "function" and token.lower_name == "url":
-        arguments = _significant(token.arguments)
+        arguments = significant(token.arguments)
         return str(arguments[0].value) if len(arguments) == 1 and arguments[0].type == "string" else None
     return None
-
-
-def _significant(tokens: Sequence[Node]) -> list[Node]:
-    return [token for token in tokens if token.type not in ("whitespace", "comment")]

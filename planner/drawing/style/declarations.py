@@ -6,7 +6,7 @@ Shorthands are written out, values that are none are dropped, and so is what bea
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -15,8 +15,10 @@ from tinycss2.ast import Node
 
 from planner.drawing.style.properties import ALIASES, PROPERTIES
 from planner.drawing.style.shorthands import SHORTHANDS
+from planner.drawing.style.tokens import text_of
 
 WIDE_KEYWORDS = frozenset({"inherit", "initial", "unset", "revert", "revert-layer"})
+_LONGEST_KEYWORD = max(map(len, WIDE_KEYWORDS))
 # What is plain enough to be cut at its semicolons and colons; the rest goes to the parser of CSS.
 _PLAIN = re.compile(r"(?:[^'\"\\{}\[\]!@/()]|\([^'\"\\{}\[\]!@/();]*\))*")
 _COMMENT = re.compile(r"/\*.*?(?:\*/|\Z)", re.DOTALL)
@@ -50,12 +52,8 @@ def declarations(content: Iterable[Node]) -> list[Declaration]:
     found: list[Declaration] = []
     for node in content:
         if node.type == "declaration":
-            found.extend(declared(node.name, value_text(node.value), node.important))
+            found.extend(declared(node.name, text_of(node.value), node.important))
     return found
-
-
-def value_text(tokens: Iterable[Node]) -> str:
-    return tinycss2.serialize([token for token in tokens if token.type != "comment"]).strip()
 
 
 def has_substitution(value: str) -> bool:
@@ -81,7 +79,7 @@ def declared(name: str, text: str, is_important: bool = False) -> tuple[Declarat
 def _expanded(name: str, text: str, is_important: bool) -> Iterable[Declaration]:
     longhands, expand = SHORTHANDS[name]
     if text.lower() in WIDE_KEYWORDS:
-        values = dict.fromkeys(longhands, text.lower())
+        values: Mapping[str, str] = dict.fromkeys(longhands, text.lower())
     elif has_substitution(text):
         return [Declaration(longhand, text, is_important, name) for longhand in longhands]
     else:
@@ -94,18 +92,22 @@ def valid(name: str, text: str, is_attribute: bool = False) -> str | None:
     row = PROPERTIES.get(name)
     if row is None or row.bearing == "none":
         return None
-    lower = text.lower()
-    if lower in WIDE_KEYWORDS:
-        return lower
+    if len(text) <= _LONGEST_KEYWORD and text.lower() in WIDE_KEYWORDS:
+        return text.lower()
     return row.grammar(text, is_attribute)
 
 
-def in_attribute(name: str, text: str) -> Declaration | None:
+def in_attribute(name: str, text: str) -> str | None:
     """What a presentation attribute declares; None where that is invalid."""
     text = text.strip()
-    if "/*" in text and name != "d":
+    if name == "d":
+        return text
+    if "/*" in text:
         text = _COMMENT.sub(" ", text).strip()
     if "(" in text and has_substitution(text):
-        return Declaration(name, text)
-    value = valid(name, text, is_attribute=True)
-    return None if value is None else Declaration(name, value)
+        return text
+    return valid(name, text, is_attribute=True)
+
+
+in_common_attribute = lru_cache(16384)(in_attribute)
+"""The same for properties whose values repeat."""

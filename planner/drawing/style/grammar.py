@@ -7,6 +7,7 @@ counts as if it had not been said.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 
@@ -14,12 +15,10 @@ import tinycss2
 from tinycss2.ast import Node
 
 from planner.drawing.style.colour import parse_colour, parse_paint, parse_url
-from planner.drawing.style.units import PLAIN_LENGTH, kind_of
+from planner.drawing.style.tokens import by_comma, component_values, is_comma, significant, text_of
+from planner.drawing.style.units import PLAIN_LENGTH, is_length_unit, kind_of
 
 Grammar = Callable[[str, bool], str | None]
-_LENGTH_UNITS = frozenset(
-    ["px", "cm", "mm", "q", "in", "pt", "pc", "em", "ex", "ch", "ic", "cap", "lh", "rem", "rex", "rch", "ric", "rcap", "rlh", "vw", "vh", "vi", "vb", "vmin", "vmax", "svw", "svh", "svi", "svb", "svmin", "svmax", "lvw", "lvh", "lvi", "lvb", "lvmin", "lvmax", "dvw", "dvh", "dvi", "dvb", "dvmin", "dvmax", "cqw", "cqh", "cqi", "cqb", "cqmin", "cqmax"]
-)
 _ATTRIBUTE_NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
 _SEPARATOR = r"(?:\s*,\s*|\s+|(?=[+\-.]))"
 
@@ -68,9 +67,9 @@ def anything(text: str, _: bool) -> str | None:
     return text or None
 
 
-def words(*allowed: str) -> Grammar:
+def words(allowed: str) -> Grammar:
     """One of these keywords."""
-    known = frozenset(allowed)
+    known = frozenset(allowed.split())
 
     def grammar(text: str, _: bool) -> str | None:
         lower = text.lower()
@@ -79,9 +78,9 @@ def words(*allowed: str) -> Grammar:
     return grammar
 
 
-def several(*allowed: str) -> Grammar:
+def several(allowed: str) -> Grammar:
     """One or more of these keywords."""
-    known = frozenset(allowed)
+    known = frozenset(allowed.split())
 
     def grammar(text: str, _: bool) -> str | None:
         found = text.lower().split()
@@ -90,9 +89,11 @@ def several(*allowed: str) -> Grammar:
     return grammar
 
 
-def length(*keywords: str, is_unitless: bool = False, has_percentage: bool = True, is_signed: bool = True) -> Grammar:
+def length(
+    keywords: str = "", *, is_unitless: bool = False, has_percentage: bool = True, is_signed: bool = True
+) -> Grammar:
     """A length, a percentage, an expression or one of the keywords. is_unitless: plain numbers in CSS too."""
-    known = frozenset(keywords)
+    known = frozenset(keywords.split())
 
     def grammar(text: str, is_attribute: bool) -> str | None:
         match = PLAIN_LENGTH.fullmatch(text)
@@ -101,7 +102,7 @@ def length(*keywords: str, is_unitless: bool = False, has_percentage: bool = Tru
             if unit == "%":
                 is_valid = has_percentage
             elif unit:
-                is_valid = unit in _LENGTH_UNITS
+                is_valid = is_length_unit(unit)
             else:
                 is_valid = is_attribute or is_unitless or float(text) == 0.0
             return text if is_valid and (is_signed or float(match[1]) >= 0.0) else None
@@ -115,16 +116,18 @@ def length(*keywords: str, is_unitless: bool = False, has_percentage: bool = Tru
     return grammar
 
 
-def number(*keywords: str, least: float = float("-inf"), has_percentage: bool = False) -> Grammar:
+def number(
+    keywords: str = "", *, least: float = -math.inf, most: float = math.inf, has_percentage: bool = False
+) -> Grammar:
     """A plain number as text; percentages as fractions of 1."""
-    known = frozenset(keywords)
+    known = frozenset(keywords.split())
 
     def grammar(text: str, _: bool) -> str | None:
         match = PLAIN_LENGTH.fullmatch(text)
         if match and match[2] == "%" and has_percentage:
             return repr(float(match[1]) / 100.0)
         if match and not match[2]:
-            return text if float(text) >= least else None
+            return text if least <= float(text) <= most else None
         if "(" in text and kind_of(text) == "number":
             return text
         lower = text.lower()
@@ -133,16 +136,16 @@ def number(*keywords: str, least: float = float("-inf"), has_percentage: bool = 
     return grammar
 
 
-def lengths(*keywords: str) -> Grammar:
+def lengths(keywords: str = "") -> Grammar:
     """One or more lengths that are not negative, with blanks or single commas between them."""
     one = length(is_unitless=True, is_signed=False)
-    known = frozenset(keywords)
+    known = frozenset(keywords.split())
 
     def grammar(text: str, is_attribute: bool) -> str | None:
         if text.lower() in known:
             return text.lower()
         if "(" in text:
-            parts = [tinycss2.serialize(part) for part in _split(tinycss2.parse_component_value_list(text))]
+            parts = [text_of([part]) for part in component_values(text) if not is_comma(part)]
         else:
             parts = re.split(r"\s*,\s*|\s+", text)
         return " ".join(parts) if parts and all(one(part, is_attribute) for part in parts) else None
@@ -169,10 +172,10 @@ def clip_path(text: str, is_attribute: bool) -> str | None:
     """`none`, a url(), or a basic shape with or without its box."""
     if reference(text, is_attribute):
         return reference(text, is_attribute)
-    parts = _split(tinycss2.parse_component_value_list(text))
-    shapes = [part for part in parts if len(part) == 1 and part[0].type == "function"]
-    boxes = [part for part in parts if len(part) == 1 and part[0].type == "ident" and part[0].lower_value in _BOXES]
-    has_known_shape = all(shape[0].lower_name in _SHAPES for shape in shapes)
+    parts = component_values(text)
+    shapes = [part for part in parts if part.type == "function"]
+    boxes = [part for part in parts if part.type == "ident" and part.lower_value in _BOXES]
+    has_known_shape = all(shape.lower_name in _SHAPES for shape in shapes)
     fits = len(shapes) + len(boxes) == len(parts) and len(shapes) <= 1 and len(boxes) <= 1
     return text if parts and fits and has_known_shape else None
 
@@ -186,7 +189,7 @@ def path_data(text: str, is_attribute: bool) -> str | None:
     token = tinycss2.parse_one_component_value(text, skip_comments=True)
     if token.type != "function" or token.lower_name != "path":
         return None
-    arguments = [argument for argument in token.arguments if argument.type not in ("whitespace", "comment")]
+    arguments = significant(token.arguments)
     if len(arguments) != 1 or arguments[0].type != "string":
         return None
     data = str(arguments[0].value)
@@ -200,17 +203,13 @@ def transform(text: str, is_attribute: bool) -> str | None:
         return "none"
     if is_attribute:
         return text if _TRANSFORM_ATTRIBUTE.fullmatch(text) else None
-    for part in tinycss2.parse_component_value_list(text):
-        if part.type in ("whitespace", "comment"):
-            continue
-        if part.type != "function" or not _is_transform(part):
-            return None
-    return text or None
+    calls = component_values(text)
+    return text if calls and all(call.type == "function" and _is_transform(call) for call in calls) else None
 
 
 def _is_transform(call: Node) -> bool:
     name = call.lower_name
-    given = _by_comma(call.arguments)
+    given = [text_of(group) for group in by_comma(call.arguments)]
     if name in _ANGLE_ARGUMENTS:
         return len(given) == 1 and _is_angle(given[0])
     if name == "skew":
@@ -221,12 +220,13 @@ def _is_transform(call: Node) -> bool:
         return len(given) in _NUMBER_ARGUMENTS[name] and all(_scale(text, False) for text in given)
     if name == "rotate3d":
         return len(given) == 4 and all(map(_plain, given[:3], [False] * 3)) and _is_angle(given[3])
-    return name == "perspective"
+    return bool(name == "perspective")
 
 
 _length = length()
 _plain = number()
 _scale = number(has_percentage=True)
+_place = length("left right center top bottom")
 
 
 def _is_angle(text: str) -> bool:
@@ -236,11 +236,56 @@ def _is_angle(text: str) -> bool:
     return kind_of(text) == "angle"
 
 
+def translate(text: str, _: bool) -> str | None:
+    """`none`, or up to three lengths."""
+    parts = _parts(text)
+    return text.lower() if parts == ["none"] else _all_of(_length, parts, text)
+
+
+def scale(text: str, _: bool) -> str | None:
+    """`none`, or up to three numbers or percentages."""
+    parts = _parts(text)
+    return text.lower() if parts == ["none"] else _all_of(_scale, parts, text)
+
+
+def rotate(text: str, _: bool) -> str | None:
+    """`none`, an angle, or an axis and an angle."""
+    parts = _parts(text)
+    if parts == ["none"]:
+        return "none"
+    angles = [part for part in parts if _is_angle(part)]
+    axis = [part for part in parts if part.lower() in ("x", "y", "z") or _plain(part, False)]
+    return text if len(parts) in (1, 2, 4) and angles and len(axis) >= len(parts) - 1 else None
+
+
+def font_style(text: str, _: bool) -> str | None:
+    parts = _parts(text.lower())
+    is_valid = parts in (["normal"], ["italic"], ["oblique"]) or (
+        len(parts) == 2 and parts[0] == "oblique" and _is_angle(parts[1])
+    )
+    return " ".join(parts) if is_valid else None
+
+
+_STRETCHES = re.compile("normal|(?:ultra-|extra-|semi-)?(?:condensed|expanded)")
+
+
+def font_stretch(text: str, _: bool) -> str | None:
+    match = PLAIN_LENGTH.fullmatch(text)
+    is_valid = _STRETCHES.fullmatch(text.lower()) or (match and match[2] == "%" and float(match[1]) >= 0.0)
+    return text.lower() if is_valid else None
+
+
+def _parts(text: str) -> list[str]:
+    return [text_of([part]) for part in component_values(text)]
+
+
+def _all_of(one: Grammar, parts: list[str], text: str) -> str | None:
+    return text if 1 <= len(parts) <= 3 and all(one(part, False) for part in parts) else None
+
+
 def transform_origin(text: str, is_attribute: bool) -> str | None:
     """Two lengths or words, x before y, each written out; a third (z) is left out."""
-    one = length("left", "right", "center", "top", "bottom")
-    parts = [tinycss2.serialize(part) for part in _split(tinycss2.parse_component_value_list(text))]
-    found = [one(part, is_attribute) for part in parts]
+    found = [_place(text_of([part]), is_attribute) for part in component_values(text)]
     if not 1 <= len(found) <= 3 or None in found:
         return None
     first, second = ([*(part for part in found if part), "center"])[:2]
@@ -250,18 +295,3 @@ def transform_origin(text: str, is_attribute: bool) -> str | None:
         return None
     percent = {"left": "0%", "top": "0%", "center": "50%", "right": "100%", "bottom": "100%"}
     return f"{percent.get(first, first)} {percent.get(second, second)}"
-
-
-def _split(tokens: Sequence[Node]) -> list[list[Node]]:
-    """Component values, one by one, without the blanks and commas between them."""
-    return [[token] for token in tokens if token.type not in ("whitespace", "comment") and token != ","]
-
-
-def _by_comma(tokens: Sequence[Node]) -> list[str]:
-    groups: list[list[Node]] = [[]]
-    for token in tokens:
-        if token == ",":
-            groups.append([])
-        else:
-            groups[-1].append(token)
-    return [tinycss2.serialize(group).strip() for group in groups]

@@ -9,7 +9,8 @@ from collections.abc import Callable, Sequence
 import tinycss2
 from tinycss2.ast import Node
 
-from planner.drawing.style.units import MEDIUM_FONT_PX, Units
+from planner.drawing.style.tokens import by_comma, significant, text_of
+from planner.drawing.style.units import units_of_page
 
 Size = tuple[float, float]
 _TYPES = frozenset({"all", "screen"})
@@ -52,12 +53,7 @@ Test = Callable[[Node], bool]
 
 def matches(tokens: Sequence[Node], page: Size) -> bool:
     """Whether a list of media queries holds for a page of this size in px; an empty list does."""
-    queries: list[list[Node]] = [[]]
-    for token in tokens:
-        if token == ",":
-            queries.append([])
-        elif token.type not in ("whitespace", "comment"):
-            queries[-1].append(token)
+    queries = by_comma(significant(tokens))
     if queries == [[]]:
         return True
     return any(_query(query, page) for query in queries)
@@ -70,7 +66,7 @@ def matches_text(text: str, page: Size) -> bool:
 
 def condition(tokens: Sequence[Node], test: Test) -> bool:
     """`not (a)`, `(a) and (b)`, `(a) or (b)`, with `test` for each of (a) and (b)."""
-    parts = [token for token in tokens if token.type not in ("whitespace", "comment")]
+    parts = significant(tokens)
     if not parts:
         return False
     if parts[0] == "not":
@@ -88,7 +84,7 @@ def condition(tokens: Sequence[Node], test: Test) -> bool:
 
 def _operand(token: Node, test: Test) -> bool:
     if token.type == "() block":
-        inner = [part for part in token.content if part.type not in ("whitespace", "comment")]
+        inner = significant(token.content)
         if inner and (inner[0] == "not" or inner[0].type == "() block" or inner[0].type == "function"):
             return condition(inner, test)
     return test(token)
@@ -98,7 +94,7 @@ def _query(parts: list[Node], page: Size) -> bool:
     """`not print`, `screen and (min-width: 100px)`, `(a) or (b)`."""
     if not parts:
         return False
-    if parts[0].type == "ident" and (parts[0].lower_value not in ("not",) or (parts[1:2] and parts[1].type == "ident")):
+    if parts[0].type == "ident" and (parts[0].lower_value != "not" or (parts[1:2] and parts[1].type == "ident")):
         is_not = parts[0].lower_value == "not"
         words = parts[1:] if parts[0].lower_value in ("not", "only") else parts
         if not words or words[0].type != "ident" or (len(words) > 1 and words[1] != "and"):
@@ -116,7 +112,7 @@ def _is_unknown(token: Node) -> bool:
     """Whether it names a feature that nobody knows: then its negation does not hold either."""
     if token.type != "() block":
         return False
-    inner = [part for part in token.content if part.type not in ("whitespace", "comment")]
+    inner = significant(token.content)
     if len(inner) != 1 or inner[0].type != "ident":
         return False
     name = inner[0].lower_value
@@ -146,7 +142,7 @@ def _feature(token: Node, page: Size) -> bool:
     """`(min-width: 100px)`, `(width >= 100px)`, `(100px < width < 200px)`, `(color)`, `(hover: hover)`."""
     if token.type != "() block":
         return False
-    text = tinycss2.serialize([part for part in token.content if part.type != "comment"]).strip().lower()
+    text = text_of(token.content).lower()
     numbers = _numbers(page)
     name, colon, value = (part.strip() for part in text.partition(":"))
     if colon:
@@ -187,4 +183,4 @@ def _value(text: str, page: Size) -> float | None:
     match = _RESOLUTION.fullmatch(text)
     if match:
         return float(match[1]) * _PER_DPPX[match[2].lower()]
-    return Units(MEDIUM_FONT_PX, MEDIUM_FONT_PX, page, page).length(text, "x")
+    return units_of_page(page).length(text, "x")

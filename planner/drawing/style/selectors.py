@@ -6,6 +6,7 @@ takes more than a few steps an element, whatever the depth of the tree and the n
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -17,11 +18,23 @@ from tinycss2.ast import Node
 from planner.drawing.xml_tree import SVG_NAMESPACE, Element
 
 Matches = Callable[[Element], bool]
-_DYNAMIC = frozenset(
-    ["active", "autofill", "blank", "buffering", "current", "default", "defined-not", "enabled-not", "disabled", "checked", "focus", "focus-visible", "focus-within", "fullscreen", "future", "hover", "in-range", "indeterminate", "invalid", "local-link", "modal", "muted", "optional", "out-of-range", "past", "paused", "picture-in-picture", "placeholder-shown", "playing", "popover-open", "read-write", "required", "seeking", "stalled", "target", "target-within", "user-invalid", "user-valid", "valid", "visited", "volume-locked", "host"]
+_DYNAMIC = re.compile(
+    "active|autofill|blank|buffering|checked|current|default|disabled|focus|focus-visible|focus-within|fullscreen|"
+    "future|host|hover|in-range|indeterminate|invalid|local-link|modal|muted|optional|out-of-range|past|paused|"
+    "picture-in-picture|placeholder-shown|playing|popover-open|read-write|required|seeking|stalled|target|"
+    "target-within|user-invalid|user-valid|valid|visited|volume-locked|enabled"
 )
 """What depends on a user or a form: never so in a drawing."""
 _ALWAYS = frozenset({"defined", "read-only"})
+_ENDS: dict[str, tuple[tuple[bool, ...], bool]] = {
+    "first-child": ((False,), False),
+    "last-child": ((True,), False),
+    "only-child": ((False, True), False),
+    "first-of-type": ((False,), True),
+    "last-of-type": ((True,), True),
+    "only-of-type": ((False, True), True),
+}
+"""Whether the place is counted from the end, and among elements of the same name."""
 _KNOWN_PREFIXES = {
     "http://www.w3.org/1999/xlink": "xlink:",
     "http://www.w3.org/XML/1998/namespace": "xml:",
@@ -217,23 +230,14 @@ def _pseudo_class(name: str, tree: Tree) -> Matches:
         )
     if name == "empty":
         return lambda element: not any(element.content)
-    if name in _DYNAMIC:
+    if _DYNAMIC.fullmatch(name):
         return lambda element: False
     if name in _ALWAYS:
         return lambda element: True
-    ends = {
-        "first-child": ((0, 1), None, False),
-        "last-child": (None, (0, 1), False),
-        "only-child": ((0, 1), (0, 1), False),
-        "first-of-type": ((0, 1), None, True),
-        "last-of-type": (None, (0, 1), True),
-        "only-of-type": ((0, 1), (0, 1), True),
-    }
-    if name not in ends:
+    if name not in _ENDS:
         raise SelectorError("unknown pseudo-class")
-    from_start, from_end, is_of_type = ends[name]
-    tests = [_nth(tree, *step, False, is_of_type) for step in [from_start] if step]
-    tests += [_nth(tree, *step, True, is_of_type) for step in [from_end] if step]
+    sides, is_of_type = _ENDS[name]
+    tests = [_nth(tree, (0, 1), is_from_end, is_of_type) for is_from_end in sides]
     return lambda element: all(test(element) for test in tests)
 
 
@@ -256,17 +260,17 @@ def _function(node: parser.FunctionalPseudoClassSelector, tree: Tree) -> Matches
         raise SelectorError("not a step")
     if of:
         return _nth_of(tree, step, is_from_end, list(parser.parse(of)))
-    return _nth(tree, *step, is_from_end, is_of_type)
+    return _nth(tree, step, is_from_end, is_of_type)
 
 
-def _nth(tree: Tree, a: int, b: int, is_from_end: bool, is_of_type: bool) -> Matches:
+def _nth(tree: Tree, step: tuple[int, int], is_from_end: bool, is_of_type: bool) -> Matches:
     def matches(element: Element) -> bool:
         siblings = tree.siblings(element)
         index = (siblings.index_of_type if is_of_type else siblings.index)[element]
         if is_from_end:
             n = siblings.n_of_type[element.tag] if is_of_type else len(siblings.elements)
             index = n - 1 - index
-        return _is_step(index + 1, a, b)
+        return _is_step(index + 1, *step)
 
     return matches
 

@@ -12,14 +12,15 @@ from cssselect2 import parser
 from tinycss2.ast import Node
 
 from planner.drawing.style import media
-from planner.drawing.style.declarations import Declaration, declarations, declared, value_text
+from planner.drawing.style.declarations import Declaration, declarations, declared
 from planner.drawing.style.properties import PROPERTIES
+from planner.drawing.style.tokens import by_comma, significant, text_of
 from planner.drawing.xml_tree import Document
 
 _DEPTH_LIMIT = 30
 _SELECTOR_LIMIT = 10_000
 """Characters of a selector: nested rules that repeat their parents would take all memory."""
-_NOT_DRAWN = {"import": "external reference", "font-face": "embedded font", "container": "container query"}
+_NOT_DRAWN = {"import": "external reference", "font-face": "embedded font", "scope": "@scope rules"}
 """At-rules that are not followed, and what they are counted as."""
 Layer = tuple[float, ...]
 UNLAYERED: Layer = (math.inf,)
@@ -78,7 +79,7 @@ class Sheets:
                 self._at_rule(node, context)
 
     def _rule(self, node: Node, context: _Context) -> None:
-        prelude = tinycss2.serialize(node.prelude).strip()
+        prelude = text_of(node.prelude)
         if context.parent:
             prelude = _nested(prelude, context.parent)
         if len(prelude) > _SELECTOR_LIMIT or context.depth > _DEPTH_LIMIT:
@@ -123,7 +124,7 @@ class Sheets:
             self._read(tinycss2.parse_rule_list(node.content), context)
 
     def _namespace(self, prelude: Sequence[Node]) -> None:
-        tokens = [token for token in prelude if token.type not in ("whitespace", "comment")]
+        tokens = significant(prelude)
         if not tokens or len(tokens) > 2:
             return
         url = tokens[-1].arguments[0] if tokens[-1].type == "function" and tokens[-1].arguments else tokens[-1]
@@ -142,22 +143,14 @@ class Sheets:
 
     def _layer_key(self, path: tuple[str, ...]) -> Layer:
         """Layers by their first appearance, each before what stands in the one around it without a layer."""
-        keys = []
-        for depth in range(1, len(path) + 1):
-            keys.append(float(self._layers.setdefault(path[:depth], len(self._layers))))
+        keys = [float(self._layers.setdefault(path[: depth + 1], len(self._layers))) for depth in range(len(path))]
         return (*keys, math.inf)
 
 
 def _nested(prelude: str, parent: str) -> str:
     """The selector of a rule nested in another (CSS Nesting 1)."""
     whole = f":is({parent})"
-    groups: list[list[Node]] = [[]]
-    for token in tinycss2.parse_component_value_list(prelude):
-        if token == ",":
-            groups.append([])
-        else:
-            groups[-1].append(token)
-    texts = [tinycss2.serialize(group).strip() for group in groups]
+    texts = [text_of(group) for group in by_comma(tinycss2.parse_component_value_list(prelude))]
     return ", ".join(text.replace("&", whole) if "&" in text else f"{whole} {text}" for text in texts)
 
 
@@ -171,7 +164,7 @@ def _is_supported(token: Node) -> bool:
     if token.type != "() block":
         return False
     found = [node for node in tinycss2.parse_blocks_contents(token.content) if node.type == "declaration"]
-    return any(_is_without_bearing(node.lower_name) or declared(node.name, value_text(node.value)) for node in found)
+    return any(_is_without_bearing(node.lower_name) or declared(node.name, text_of(node.value)) for node in found)
 
 
 def _is_without_bearing(name: str) -> bool:

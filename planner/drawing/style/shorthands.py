@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 
 import tinycss2
 
 from planner.drawing.style.properties import INITIAL, PROPERTIES
+from planner.drawing.style.tokens import significant, text_of
 
 _FONT = ("font-style", "font-variant", "font-weight", "font-stretch", "font-size", "line-height", "font-family")
 _MARKERS = ("marker-start", "marker-mid", "marker-end")
-_STRETCHES = frozenset(
-    ["ultra-condensed", "extra-condensed", "condensed", "semi-condensed", "semi-expanded", "expanded", "extra-expanded", "ultra-expanded"]
-)
+_STRETCHES = re.compile("(?:ultra-|extra-|semi-)?(?:condensed|expanded)")
 _SYSTEM_FONTS = frozenset({"caption", "icon", "menu", "message-box", "small-caption", "status-bar"})
 _ALL = tuple(
     name for name, row in PROPERTIES.items() if row.bearing != "none" and name not in ("direction", "unicode-bidi")
@@ -47,7 +47,7 @@ def _with_size(values: dict[str, str], words: list[str], rest: str) -> Longhands
             values["font-style"] = word
         elif word == "small-caps":
             values["font-variant"] = word
-        elif word in _STRETCHES:
+        elif _STRETCHES.fullmatch(word):
             values["font-stretch"] = word
         elif word != "normal" and PROPERTIES["font-weight"].grammar(word, False):
             values["font-weight"] = word
@@ -65,19 +65,11 @@ def _with_size(values: dict[str, str], words: list[str], rest: str) -> Longhands
 
 def _cut_after_size(rest: str) -> tuple[str, str]:
     """`20px / 1.5` and `"A B", serif`: the family begins after the first value that no slash joins to the next."""
-    tokens = [token for token in tinycss2.parse_component_value_list(rest) if token.type != "whitespace"]
-    n_size = 3 if len(tokens) > 2 and tokens[1] == "/" else 1
-    return tinycss2.serialize(tokens[:n_size]).replace("/**/", ""), _family(rest, n_size)
-
-
-def _family(rest: str, n_skipped: int) -> str:
     tokens = tinycss2.parse_component_value_list(rest)
-    for index, token in enumerate(tokens):
-        if n_skipped == 0:
-            return tinycss2.serialize(tokens[index:]).strip()
-        if token.type != "whitespace":
-            n_skipped -= 1
-    return ""
+    places = [index for index, token in enumerate(tokens) if token.type not in ("whitespace", "comment")]
+    n_size = 3 if len(places) > 2 and tokens[places[1]] == "/" else 1
+    end = places[n_size - 1] + 1
+    return text_of(significant(tokens[:end])).replace("/**/", ""), text_of(tokens[end:])
 
 
 def _marker(text: str) -> Longhands:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 from planner.drawing.style.cascade import ATTRIBUTE_LAYER, Cascade, Declared
@@ -12,7 +13,7 @@ from planner.drawing.style.declarations import WIDE_KEYWORDS, has_substitution, 
 from planner.drawing.style.properties import COUNTED, INHERITED, INITIAL, TEXT_ELEMENTS
 from planner.drawing.style.sheet import Sheets
 from planner.drawing.style.shorthands import SHORTHANDS
-from planner.drawing.style.units import MEDIUM_FONT_PX, Axis, Units
+from planner.drawing.style.units import MEDIUM_FONT_PX, Axis, Units, normal_line_height, units_of_page
 from planner.drawing.style.variables import Unresolvable, resolved, substituted
 from planner.drawing.xml_tree import Document, Element
 
@@ -49,11 +50,11 @@ _OLD_WRITING_MODES = {
 class Style:
     """The computed style of one element in one place of the rendering tree (`use` shows an element in several)."""
 
-    __slots__ = ("_children", "_inherited", "_own", "_plain", "_styles", "_units", "_variables", "element", "parent")
+    __slots__ = ("_inherited", "_line_height", "_own", "_page", "_units", "_variables", "element", "parent")
 
     def __init__(
         self,
-        styles: _Page,
+        page: _Page,
         element: Element | None,
         parent: Style | None,
         own: Mapping[str, str],
@@ -61,22 +62,32 @@ class Style:
         variables: Mapping[str, str],
         units: Units,
     ) -> None:
-        """parent: that of what the element is shown under. own: what was said of it; inherited: what it hands down, both
-        computed."""
+        """parent: that of what the element is shown under. own: what was said of it; inherited: what it hands down.
+        Both computed."""
         self.element = element
         self.parent = parent
-        self._styles = styles
+        self._page = page
         self._own = own
         self._inherited = inherited
         self._variables = variables
         self._units = units
-        self._children: dict[tuple[Element, tuple[float, float]], Style] = {}
-        self._plain: dict[tuple[float, float], Style] = {}
+        self._line_height: float | None = None
 
     @property
     def font_size(self) -> float:
         """In user units."""
         return self._units.font_size
+
+    @property
+    def line_height(self) -> float:
+        """In user units."""
+        if self._line_height is None:
+            quantity = self._units.quantity(self["line-height"], "y")
+            if quantity is None:  # `normal`
+                self._line_height = normal_line_height(self.font_size)
+            else:
+                self._line_height = quantity.value * (self.font_size if quantity.kind == "number" else 1.0)
+        return self._line_height
 
     def __getitem__(self, name: str) -> str:
         """The computed value of a property as text: cascade by origin, importance, specificity and order, `var()`,
@@ -133,11 +144,11 @@ class Style:
 
 
 class _Page:
-    """The cascade on a page of one size."""
+    """The cascade on a page of one size, and the styles that were computed there."""
 
-    def __init__(self, cascade: Cascade, size: tuple[float, float]) -> None:
+    def __init__(self, cascade: Cascade) -> None:
         self.cascade = cascade
-        self.size = size
+        self.styles: dict[tuple[Element, Style, tuple[float, float]], Style] = {}
 
 
 class Styles:
@@ -152,53 +163,63 @@ class Styles:
 
     def root(self, viewport: tuple[float, float]) -> Style:
         """That of what the outermost `svg` inherits from: initial values, with the page as the viewport."""
-        page = _Page(Cascade(self._root, self._rules, viewport), viewport)
-        units = Units(MEDIUM_FONT_PX, MEDIUM_FONT_PX, viewport, viewport)
-        return Style(page, None, None, _NOTHING, _NOTHING, _NOTHING, units)
+        page = _Page(Cascade(self._root, self._rules, viewport))
+        return Style(page, None, None, _NOTHING, _NOTHING, _NOTHING, units_of_page(viewport))
 
     def of(self, element: Element, parent: Style, viewport: tuple[float, float]) -> Style:
         """That of an element that is shown under something with the style `parent`; `viewport` is the size of the
         nearest viewport in user units, which percentages are of."""
-        key = element, viewport
-        style = parent._children.get(key)
+        key = element, parent, viewport
+        known = parent._page.styles
+        style = known.get(key)
         if style is None:
-            style = parent._children[key] = _computed(element, parent, viewport)
+            style = known[key] = _computed(element, parent, viewport)
         return style
 
 
 def _computed(element: Element, parent: Style, viewport: tuple[float, float]) -> Style:
-    declared = parent._styles.cascade.declared(element)
-    above = parent._units
-    if not declared:
-        units = above if viewport == above.viewport else _with(above, viewport, above.font_size, element)
-        return Style(parent._styles, element, parent, _NOTHING, parent._inherited, parent._variables, units)
-    variables = parent._variables
-    said = {name: _winner(name, entry, parent) for name, entry in declared.items() if name[:2] == "--"}
-    if said:
-        variables = resolved({name: value for name, value in said.items() if value is not None}, variables)
-        variables = {name: value for name, value in variables.items() if name not in said or said[name] is not None}
+    said = parent._page.cascade.said(element)
+    variables = _custom_properties(said.variables, parent) if said.variables else parent._variables
     values = {}
-    for name, entry in declared.items():
-        if name[:2] != "--":
-            values[name] = _value(name, entry, parent, variables)
-    font_size = above.font_size
+    handed_down = {}
+    for name, entry in said.properties.items():
+        value = entry.value
+        if value in WIDE_KEYWORDS or ("(" in value and name != "d"):
+            value = _value(name, entry, parent, variables)
+        values[name] = value
+    font_size = parent._units.font_size
     if "font-size" in values:
-        font_size = _font_size(values["font-size"], above)
+        font_size = _font_size(values["font-size"], parent._units)
         values["font-size"] = f"{font_size:.10g}px"
-    units = _with(above, viewport, font_size, element)
-    for name in values.keys() & _RECKONED:
-        values[name] = _reckoned(name, values[name], parent, units)
-    handed_down = {name: value for name, value in values.items() if name in INHERITED}
+    units = _units(element, parent, viewport, font_size)
+    for name, value in values.items():
+        if name in _RECKONED:
+            values[name] = value = _reckoned(name, value, parent, units)
+        if name in INHERITED:
+            handed_down[name] = value
     inherited = {**parent._inherited, **handed_down} if handed_down else parent._inherited
-    return Style(parent._styles, element, parent, values, inherited, variables, units)
+    return Style(parent._page, element, parent, values, inherited, variables, units)
+
+
+def _custom_properties(said: Mapping[str, Declared], parent: Style) -> Mapping[str, str]:
+    """Those of the parent with those that are said, variables in them replaced."""
+    given = {name: _winner(name, entry, parent) for name, entry in said.items()}
+    defined = {name: value for name, value in given.items() if value is not None}
+    inherited = {name: value for name, value in parent._variables.items() if name not in given}
+    return resolved(defined, inherited)
 
 
 _RECKONED = _HANDED_DOWN | _OF_FONT | {"font-weight", "writing-mode", "color"}
 
 
-def _with(above: Units, viewport: tuple[float, float], font_size: float, element: Element) -> Units:
-    root_font_size = font_size if element.parent is None else above.root_font_size
-    return Units(font_size, root_font_size, viewport, above.page)
+def _units(element: Element, parent: Style, viewport: tuple[float, float], font_size: float) -> Units:
+    above = parent._units
+    if element.parent is None:  # `rem` and `rlh` are those of the outermost element
+        return Units(font_size, font_size, above.line_height, normal_line_height(font_size), viewport, above.page)
+    line_height = parent.line_height
+    if (font_size, viewport, line_height) == (above.font_size, above.viewport, above.line_height):
+        return above
+    return Units(font_size, above.root_font_size, line_height, above.root_line_height, viewport, above.page)
 
 
 def _winner(name: str, entry: Declared | None, parent: Style) -> str | None:
@@ -248,8 +269,7 @@ def _font_size(value: str, above: Units) -> float:
         return MEDIUM_FONT_PX * _SIZES[value]
     if value in ("larger", "smaller"):
         return above.font_size * (_STEP if value == "larger" else 1.0 / _STEP)
-    of_font = Units(above.font_size, above.root_font_size, (above.font_size, above.font_size), above.page)
-    size = of_font.length(value, "x")
+    size = replace(above, viewport=(above.font_size, above.font_size)).length(value, "x")
     return above.font_size if size is None else max(size, 0.0)
 
 

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 
 import tinycss2
 from tinycss2.ast import Node
+
+from planner.drawing.style.tokens import is_comma, significant
 
 LENGTH_LIMIT = 1 << 16
 """Characters that all that is put into one value may come to: variables that double one another would take all memory.
@@ -20,12 +23,12 @@ class Unresolvable(ValueError):
 def substituted(value: str, variables: Mapping[str, str]) -> str:
     """Errors: Unresolvable."""
     tokens = _Substitution(variables).replaced(tinycss2.parse_component_value_list(value))
-    return tinycss2.serialize(tokens).replace("/**/", " ").strip()
+    return str(tinycss2.serialize(tokens)).replace("/**/", " ").strip()
 
 
 def resolved(variables: Mapping[str, str], inherited: Mapping[str, str]) -> dict[str, str]:
-    """What custom properties come to, with those of the parent; those in a circle are not defined at all."""
-    result = {name: value for name, value in inherited.items() if name not in variables}
+    """What custom properties come to, with others that are inherited; those in a circle are not defined at all."""
+    result = dict(inherited)
     pending = dict(variables)
     while pending:
         _resolve(next(iter(pending)), pending, result, ())
@@ -47,10 +50,8 @@ def _resolve(name: str, pending: dict[str, str], result: dict[str, str], within:
                 circle |= _resolve(other, pending, result, chain)
     pending.pop(name)
     if name not in circle:
-        try:
+        with suppress(Unresolvable):  # as if it had not been defined
             result[name] = substituted(value, result) if "(" in value else value
-        except Unresolvable:
-            pass  # as if it had not been defined
     return circle
 
 
@@ -87,8 +88,8 @@ class _Substitution:
 
     def _value_of(self, call: Node) -> list[Node]:
         arguments = list(call.arguments)
-        comma = next((index for index, token in enumerate(arguments) if token == ","), None)
-        names = [token for token in arguments[:comma] if token.type not in ("whitespace", "comment")]
+        comma = next((index for index, token in enumerate(arguments) if is_comma(token)), None)
+        names = significant(arguments[:comma])
         if len(names) != 1 or names[0].type != "ident":
             raise Unresolvable
         value = self._variables.get(names[0].value) if call.lower_name == "var" else None
