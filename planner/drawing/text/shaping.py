@@ -15,6 +15,7 @@ from planner.drawing.text.fonts import Font, ShapedGlyph
 _CONTEXT = 5
 """Characters on either side that HarfBuzz looks at, to join letters."""
 
+
 def shape(text: Text, options: ReadingOptions) -> list[int]:
     """Gives each character its font, glyphs and advance, and its place `u` in one line. Returns their order from left
     to right, or from top to bottom."""
