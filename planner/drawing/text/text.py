@@ -18,6 +18,9 @@ from planner.drawing.text.glyphs import outlines, single_lines
 from planner.drawing.text.layout import lay_out
 from planner.drawing.xml_tree import Element
 
+MOST_NAMED = 12
+"""Characters that are not drawn as they should be, and are counted by name."""
+
 
 def text_shapes(element: Element, style: Style, context: TextContext) -> list[Glyphs]:
     """What a `text` element shows, in the order of painting, in its own user units. Errors: DrawingError."""
@@ -71,10 +74,10 @@ def _pieces(text: Text, context: TextContext) -> Iterator[tuple[Character, bool,
         drawn = outlines(character, placed)
         code = f"glyph U+{ord(character.text):04X}"
         if not drawn:
-            context.skipped[code] += 1
+            _count(context, code)
             continue
         if context.options.text == "single":
-            context.skipped[f"{code} as a single line (its outline is drawn)"] += 1
+            _count(context, f"{code} as a single line (its outline is drawn)")
         yield character, False, drawn
 
 
@@ -87,3 +90,9 @@ def _clusters(characters: list[Character]) -> Iterator[tuple[Character, str]]:
             stop += 1
         yield characters[start], "".join(one.text for one in characters[start:stop])
         start = stop
+
+
+def _count(context: TextContext, glyph: str) -> None:
+    """By name; of a long text in a script that no font has not all."""
+    named = [kind for kind in context.skipped if kind.startswith("glyph ")]
+    context.skipped[glyph if glyph in named or len(named) < MOST_NAMED else "other glyphs"] += 1

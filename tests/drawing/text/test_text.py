@@ -99,6 +99,14 @@ def test_what_nothing_has_is_named(mode: str) -> None:
     assert sample.skipped == {"glyph U+1FA99": 1}
 
 
+def test_a_dozen_missing_characters_are_named_and_the_others_counted() -> None:
+    sample = Sample('<text y="90">' + "".join(chr(0x13000 + code) for code in range(20)) * 2 + "</text>")
+    assert sample.shapes() == []
+    assert sample.skipped["glyph U+13000"] == 2
+    assert sample.skipped["other glyphs"] == 16
+    assert len(sample.skipped) == 13
+
+
 def test_arabic_is_joined_and_runs_from_right_to_left() -> None:
     text = Sample('<text x="10" y="90">سلام</text>', "outline").laid_out()
     starts = [one.u for one in text.characters if not one.is_middle]
