@@ -71,7 +71,7 @@ def _styles_around(style: Style) -> list[Style]:
 
 def _drawn(text: Text, line: _Line, *, is_outline: bool) -> list[Subpath]:
     """The line over each character, joined where characters stand in a row."""
-    pieces: list[FloatArray] = []
+    pieces: list[tuple[FloatArray, float]] = []
     for character in text.characters[line.first : line.stop]:
         if character.is_middle or character.span.style["visibility"] != "visible" or character.advance == 0.0:
             continue
@@ -83,12 +83,11 @@ def _drawn(text: Text, line: _Line, *, is_outline: bool) -> list[Subpath]:
         if character.is_upright:
             ends = np.array([[y, 0.0], [y, -character.advance / character.stretch]])
         piece = ends @ placed[:, :2].T + placed[:, 2]
-        if pieces and _is_continued(pieces[-1], piece, character):
-            pieces[-1] = np.stack((pieces[-1][0], piece[1]))
+        if pieces and pieces[-1][1] == character.size and _is_continued(pieces[-1][0], piece, character):
+            pieces[-1] = np.stack((pieces[-1][0][0], piece[1])), character.size
         else:
-            pieces.append(piece)
-    width = THICKNESS * line.style.font_size
-    return [_box(piece, width) if is_outline else polyline(piece) for piece in pieces]
+            pieces.append((piece, character.size))
+    return [_box(piece, THICKNESS * size) if is_outline else polyline(piece) for piece, size in pieces]
 
 
 def _is_continued(before: FloatArray, piece: FloatArray, character: Character) -> bool:

@@ -156,6 +156,12 @@ def test_decorations_run_below_over_and_through_and_belong_to_who_asked() -> Non
     assert shapes.index(lines[2]) == len(shapes) - 1
 
 
+def test_a_decoration_is_as_thick_as_a_tenth_of_the_letters_that_it_runs_along() -> None:
+    svg = '<text y="200" text-decoration="underline">a<tspan font-size="50">b</tspan></text>'
+    boxes = Sample(svg, "outline").shapes()[0].subpaths
+    assert [float(np.ptp(box.beziers[..., 1])) for box in boxes] == pytest.approx([10.0, 5.0])
+
+
 def test_the_box_of_a_text_holds_its_cells() -> None:
     sample = Sample('<text x="10" y="200" font-family="DejaVu Sans">AB</text>')
     assert text_box(sample.element, sample.style, sample.context) == pytest.approx(
