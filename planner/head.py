@@ -5,15 +5,17 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
 from itertools import pairwise
-from typing import IO
+from pathlib import Path
+from typing import IO, Any, NamedTuple
 
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.counted import counted
 from planner.drawing.copies import Copies
-from planner.errors import TrajectoryFileError
+from planner.drawing.options import AS_A_BROWSER, ReadingOptions
+from planner.errors import TrajectoryFileError, UsageError
 from planner.pens import GroupBy, colour_of, hex_of
 from planner.settings import MOST_COPIES
 
@@ -97,6 +99,29 @@ class LeftOut:
 NOTHING_LEFT_OUT = LeftOut()
 
 
+class _Form(NamedTuple):
+    """How a value is written, and read. Errors of reading: ValueError."""
+
+    text: Callable[[Any], str]
+    value: Callable[[str], object]
+
+
+def _is_yes(text: str) -> bool:
+    if text not in ("yes", "no"):
+        raise ValueError("wanted yes or no")
+    return text == "yes"
+
+
+_READING = {
+    "text": _Form(str, str),
+    "font": _Form(str, Path),
+    "crop": _Form(str, str),
+    "occlude": _Form(lambda value: "yes" if value else "no", _is_yes),
+    "dpi": _Form(lambda value: _shortest(value), float),
+}
+"""The keys that say how the drawing was read, those of `ReadingOptions`; the usual values are not written."""
+
+
 @dataclass(frozen=True, slots=True)
 class Head:
     """What the comment lines say; the fields are those of `Trajectory`."""
@@ -110,6 +135,7 @@ class Head:
     placement: Placement
     left_out: LeftOut
     paper: PaperPose
+    reading: ReadingOptions = AS_A_BROWSER
     pens: tuple[PenInk, ...] = ()
     pen_changes: tuple[int, ...] = ()
     chosen: Chosen = ALL
@@ -172,6 +198,11 @@ class Head:
         ]
         if self.left_out != NOTHING_LEFT_OUT:
             entries += [("left_out_mm", f"{self.left_out.length_mm:.6g}"), ("left_out_taps", str(self.left_out.taps))]
+        entries += [
+            (field.name, _READING[field.name].text(getattr(self.reading, field.name)))
+            for field in fields(ReadingOptions)
+            if getattr(self.reading, field.name) != field.default
+        ]
         return entries
 
 
@@ -228,6 +259,7 @@ def read_head(name: str, file: IO[str]) -> tuple[Head, str, int]:
         _placement(name, found),
         _left_out(name, found),
         paper,
+        _reading(name, found),
         *_pens(name, found),
         _chosen(name, found),
         _path_work(name, found),
@@ -334,6 +366,22 @@ def _names(name: str, found: Mapping[str, tuple[str, int]], key: str) -> tuple[s
     if not isinstance(names, list) or not names or not all(isinstance(one, str) for one in names):
         raise TrajectoryFileError(name, line, f"'# {key}:' is '{shown(text)}'; wanted a JSON list of names")
     return tuple(names)
+
+
+def _reading(name: str, found: Mapping[str, tuple[str, int]]) -> ReadingOptions:
+    told: dict[str, Any] = {}
+    for key, form in _READING.items():
+        if key in found:
+            text, line = found[key]
+            try:
+                told[key] = form.value(text)
+                ReadingOptions(**{"text": "outline", key: told[key]})  # a font needs outlines
+            except (UsageError, ValueError) as error:
+                raise TrajectoryFileError(name, line, f"'# {key}:' is '{shown(text)}': {error}") from None
+    try:
+        return ReadingOptions(**told)
+    except UsageError as error:
+        raise TrajectoryFileError(name, None, str(error)) from None
 
 
 def _numbers(name: str, found: Mapping[str, tuple[str, int]], key: str, count: int) -> list[float]:

@@ -34,6 +34,7 @@ from planner.motion.timed_stroke import TimedStroke
 from planner.motion.tolerance import FLATTEN_SHARE, JOIN_SHARE
 from planner.placement.clip import clip_strokes
 from planner.placement.pieces import Piece
+from planner.placement.short_gaps import SHORTEST_GAP_MM, gaps_to_draw
 from planner.placement.split import split_strokes
 from planner.progress import Report
 from planner.redundancy.arm_model import ArmModel
@@ -147,9 +148,12 @@ def _strokes(
     group: PenGroup, svg_to_arm: FloatArray, model: ArmModel, settings: PlanSettings
 ) -> tuple[list[FloatArray], LeftOut, list[str]]:
     """Strokes (n, 2), arm mm, what was left out as out of reach, and what is to be said of them."""
-    warnings = []
+    warnings: list[str] = []
     left_out = LeftOut()
-    strokes = flatten_all(group.outlines, svg_to_arm, FLATTEN_SHARE * settings.tolerance_mm)
+    short_gaps = gaps_to_draw(group.outlines, svg_to_arm)
+    if short_gaps:
+        warnings.append(f"gaps of dashes under {SHORTEST_GAP_MM:g} mm on paper, drawn solid: {len(short_gaps)}")
+    strokes = flatten_all([*group.outlines, *short_gaps], svg_to_arm, FLATTEN_SHARE * settings.tolerance_mm)
     if settings.dedup_mm:
         strokes, doubled_mm = without_doubles(strokes, settings.dedup_mm)
         if doubled_mm:

@@ -62,7 +62,7 @@ def plan(
     model, arm = context.model, context.model.arm
     lift_mm(arm, settings)  # said before the work begins
     with executor_of(_worth_hiring(workers, drawing_file), context.make_ready) as executor:
-        drawing = read_drawing(drawing_file, partial(report, "reading"))
+        drawing = read_drawing(drawing_file, partial(report, "reading"), options=settings.reading)
         place, drawings = _ordered(drawing, context, report)
         require_bounded_whole(drawings)
         drawings = _through(executor, drawings, PenDrawing.move, "within the joint limits", report)
@@ -86,6 +86,7 @@ def plan(
         pens=samples.pens,
         pen_changes=samples.pen_changes,
         chosen=Chosen(settings.layers),
+        reading=settings.reading,
         path_work=PathWork(settings.join_mm, settings.dedup_mm, settings.simplify_mm, settings.passes),
     )
     verify(trajectory, arm)
@@ -102,7 +103,9 @@ def placed_strokes(
 ) -> tuple[list[FloatArray], list[str]]:
     """Strokes (n, 2) in arm mm, placed and in the order that they are planned in, and what was left out on the way.
     Errors: PlannerError."""
-    place, drawings = _ordered(read_drawing(drawing_file), PlanContext(model, settings), _unheard)
+    place, drawings = _ordered(
+        read_drawing(drawing_file, options=settings.reading), PlanContext(model, settings), _unheard
+    )
     return list(chain.from_iterable(one.strokes for one in drawings)), _told(place.drawing, drawings)
 
 
@@ -166,10 +169,7 @@ def _through(
 
 def _told(drawing: Drawing, drawings: Sequence[PenDrawing]) -> list[str]:
     """What is to be said of the drawing, and of what each pen draws of it."""
-    notes = []
-    if drawing.skipped:
-        counts = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
-        notes.append(f"not drawn as in the SVG: {counts}")
+    notes = drawing.notes()
     if len(drawings) == 1:
         return notes + drawings[0].notes
     return notes + [f"{one.group.pen.name}: {note}" for one in drawings for note in one.notes]

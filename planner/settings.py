@@ -7,6 +7,7 @@ from enum import StrEnum
 from math import inf
 
 from planner.checked import number_in, one_of
+from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.errors import UsageError
 from planner.paper_size import Orientation, PaperSize
 from planner.pens import GroupBy, Pen
@@ -132,6 +133,7 @@ class PlanSettings:
         pens: The pens that there are, in the order in which they draw.
         skip_unreachable: Leave out what the arm cannot reach, and say so, instead of failing.
         weights: What method `path` spends the arm's redundancy on, None for the arm's own.
+        reading: How the drawing is read.
     """
 
     arm: str = "drawing_arm"
@@ -167,6 +169,7 @@ class PlanSettings:
     pens: tuple[Pen, ...] = ()
     skip_unreachable: bool = False
     weights: ConfigurationWeights | None = None
+    reading: ReadingOptions = AS_A_BROWSER
 
     def __post_init__(self) -> None:
         numbers = {
@@ -204,6 +207,8 @@ class PlanSettings:
             raise UsageError(f"arm is the name of an arm or of its .toml file, not {self.arm!r:.40}")
         if not isinstance(self.weights, ConfigurationWeights | None):
             raise UsageError(f"weights is a ConfigurationWeights, not {self.weights!r:.40}")
+        if not isinstance(self.reading, ReadingOptions):
+            raise UsageError(f"reading is a ReadingOptions, not {self.reading!r:.40}")
 
     def with_pen(self, pen: Pen, speed_mm_s: float, speed_share: float) -> PlanSettings:
         """The settings for what one pen draws, at that share of the speed that it has, or else of `speed_mm_s`."""

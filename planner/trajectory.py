@@ -13,6 +13,7 @@ import numpy as np
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from planner.drawing.drawing import Drawing
+from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.drawing.pen_groups import chosen_layers, only
 from planner.errors import TrajectoryFileError, UsageError
 from planner.files import written_aside
@@ -69,6 +70,7 @@ class Trajectory:
         chosen: What of the drawing was drawn.
         path_work: What was done to its lines beforehand.
         paper: Where the paper lies that arm millimetres are counted on, in the frame of the base.
+        reading: How the drawing was read.
     """
 
     arm: str
@@ -85,6 +87,7 @@ class Trajectory:
     placement: Placement = NOTHING_TOLD
     left_out: LeftOut = NOTHING_LEFT_OUT
     paper: PaperPose = BASE_PLANE
+    reading: ReadingOptions = AS_A_BROWSER
     pens: tuple[PenInk, ...] = ()
     pen_changes: tuple[int, ...] = ()
     chosen: Chosen = ALL
@@ -162,6 +165,7 @@ class Trajectory:
             self.placement,
             self.left_out,
             self.paper,
+            self.reading,
             self.pens,
             self.pen_changes,
             self.chosen,
@@ -257,6 +261,7 @@ def read_trajectory(source: Path) -> Trajectory:
         placement=head.placement,
         left_out=head.left_out,
         paper=head.paper,
+        reading=head.reading,
         pens=head.pens,
         pen_changes=head.pen_changes,
         chosen=head.chosen,

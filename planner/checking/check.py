@@ -59,6 +59,6 @@ def check_trajectory(
     findings += (
         map_findings(trajectory, None, tolerance_mm)
         if drawing is None
-        else drawing_findings(trajectory, trajectory.all_of(drawing), sweeps, tolerance_mm)
+        else drawing_findings(trajectory, drawing, sweeps, tolerance_mm)
     )
     return CheckResult(tuple(findings))

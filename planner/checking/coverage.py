@@ -11,13 +11,14 @@ from scipy.spatial import cKDTree
 from planner.arrays import BoolArray, FloatArray
 from planner.checking.between import Sweep
 from planner.checking.check_result import Finding, Place
+from planner.checking.chosen import told_by
 from planner.checking.mapping import map_findings, map_trouble, user_to_arm
 from planner.checking.pen import place_of
 from planner.checking.polyline import DenseLines, dense_lines, joined_lines
 from planner.checking.repeats import most_repeated
+from planner.checking.wanted import WantedLines, wanted_lines
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
-from planner.drawing.flatten import flatten_all
 from planner.errors import UsageError
 from planner.head import NOTHING_LEFT_OUT, LeftOut
 from planner.trajectory import Trajectory
@@ -40,24 +41,24 @@ def drawing_findings(
     if trouble:
         return [Finding("svg_to_arm_mm", False, remark=trouble)]
     affine = user_to_arm(trajectory)
-    wanted_lines = flatten_all(drawing.outlines, affine, FLATTENING_MM)
-    wanted = _dense(wanted_lines)
+    lines = _wanted(trajectory, drawing)
+    required = _dense(lines.required)
     pen_lines = [_pen_lines(sweep) for sweep in sweeps]
     shape = map_findings(trajectory, drawing, tolerance_mm)
     if not len(pen_lines[0].points_mm):
-        missing_mm = float(wanted.length_at_points_mm().sum())
+        missing_mm = float(required.length_at_points_mm().sum())
         return [
             *shape,
             Finding("nothing missing", False, remark=f"the pen is never down: all {missing_mm:.1f} mm are missing"),
         ]
     work = trajectory.path_work
     limit = tolerance_mm + FLATTENING_MM + work.simplify_mm
-    allowed = _dense([*wanted_lines, *_bridges(wanted_lines, work.join_mm or 0.0)])
+    allowed = _dense([*lines.allowed, *_bridges(lines.allowed, work.join_mm or 0.0)])
     off_mm = [allowed.distance_mm(pen.points_mm) for pen in pen_lines]
     return [
         *shape,
         _extra(trajectory, pen_lines, off_mm, sweeps, limit, affine),
-        _missing(trajectory, wanted, wanted_lines, pen_lines, limit + work.dedup_mm, affine),
+        _missing(trajectory, required, lines.required, pen_lines, limit + work.dedup_mm, affine),
         _drawn_once(trajectory, allowed, pen_lines[0], off_mm[0] > limit, sweeps[0], limit, affine),
     ]
 
@@ -69,9 +70,24 @@ def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: Floa
     if trouble:
         raise UsageError(f"svg_to_arm_mm of the trajectory {trouble}")
     distance = np.zeros(trajectory.n_samples)
-    wanted = _dense(flatten_all(trajectory.all_of(drawing).outlines, user_to_arm(trajectory), FLATTENING_MM))
+    wanted = _dense(_wanted(trajectory, drawing).allowed)
     distance[trajectory.pen] = wanted.distance_mm(tip_mm[trajectory.pen, :2])
     return distance
+
+
+def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
+    """The lines of what the header tells that was drawn, as often as it was."""
+    affine, copies = user_to_arm(trajectory), trajectory.placement.copies
+    lines = wanted_lines(drawing, affine, FLATTENING_MM, told_by(trajectory.chosen, drawing, affine))
+    if copies is None:
+        return lines
+    # To the right on the paper is -y of the arm, down is -x.
+    steps = [
+        np.array([-row * copies.step_y_mm, -column * copies.step_x_mm])
+        for row in range(copies.rows)
+        for column in range(copies.columns)
+    ]
+    return WantedLines(*([line + step for step in steps for line in some] for some in (lines.allowed, lines.required)))
 
 
 def _bridges(lines: Sequence[FloatArray], gap_mm: float) -> list[FloatArray]:

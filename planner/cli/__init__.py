@@ -97,6 +97,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.measure import measure
 
             return measure(rest)
+        case "lines":
+            from planner.cli.lines import lines
+
+            return lines(rest)
         case "compare":
             from planner.cli.compare import compare
 
@@ -113,6 +117,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.predict import predict
 
             return predict(rest)
+        case "fonts":
+            from planner.cli.fonts import fonts
+
+            return fonts(rest)
         case "jog":
             from planner.cli.jog import jog
 

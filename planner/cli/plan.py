@@ -27,6 +27,7 @@ from planner.cli.quantities import (
     speed_mm_s,
     whole_number,
 )
+from planner.cli.reading import add_reading_options, reading_of
 from planner.cli.report import check_report, write_report_of
 from planner.cli.terminal import print_lines, print_summary, print_warnings, progress
 from planner.cli.workers import add_workers_option
@@ -56,6 +57,7 @@ Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a t
 
 other commands (each has its own --help; a drawing of that name is planned as ./NAME):
   plan batch FOLDER         plan every drawing of a folder
+  plan lines DRAWING.svg    what would be drawn, as plain lines on the page
   plan run traj.csv         play a trajectory on the simulated arm
   plan pattern --arm ARM    a trajectory of marks to calibrate an arm with
   plan calibrate ARM        an arm file from marks that the arm made
@@ -65,6 +67,7 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan check traj.csv       an independent check of a trajectory
   plan plot traj.csv -o F   pictures of a trajectory
   plan compare DRAWING.svg  the same points by every method of inverse kinematics
+  plan fonts                the single-line faces that text is written in
   plan measure PHOTO        where the marks of a calibration sheet came
   plan arm [NAME]           list the arms, or describe one
   plan paper --arm ARM      where to lay the paper, as a sheet to print
@@ -80,6 +83,7 @@ examples:
   draw | plan - > traj.csv                         from a program that writes an SVG, as part of a pipe
   plan city.svg --workers 4                        with four processes; the result does not depend on them
   plan flower.svg --weights time=3,reversals=0     configurations for speed rather than for servos with backlash
+  plan letter.svg --text outline --font Lora.ttf   letters as the outlines of a font, not as single lines
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
   plan flower.svg --paper a6 --align top-left      at the top left of a sheet
   plan stamp.svg --at 20 15 --copies 3x2           six of them at true size, the first 20 mm right and 15 mm down
@@ -169,6 +173,7 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
         pens=options.pens,
         skip_unreachable=options.skip_unreachable,
         weights=options.weights,
+        reading=reading_of(options),
     )
 
 
@@ -199,8 +204,8 @@ def plan_parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
     parser.usage = (
         "plan DRAWING.svg [-o traj.csv] [options]\n"
-        "       plan batch|run|pattern|measure|calibrate|predict|jog|ports|check|plot|compare|arm|paper|estimate|config"
-        " ..."
+        "       plan batch|lines|run|pattern|measure|calibrate|predict|jog|ports|check|plot|compare|fonts|arm|paper"
+        "|estimate|config ..."
     )
     parser.add_argument(
         "drawing", type=input_file, metavar="DRAWING.svg", help="the drawing, gzipped or not; - for standard input"
@@ -305,6 +310,7 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         help="rest on the paper after lowering (default: %(default)g s)",
     )
 
+    add_reading_options(parser)
     add_placement_options(parser.add_argument_group("placement"))
     add_pen_options(parser.add_argument_group("layers and pens"))
     add_path_options(parser.add_argument_group("lines"))

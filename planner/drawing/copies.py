@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from planner.arrays import FloatArray, frozen
-from planner.drawing.drawing import Drawing
+from planner.drawing.drawing import Drawing, Outline
 from planner.errors import DrawingError
 
 _CURVE_LIMIT = 2_500_000
@@ -40,9 +40,14 @@ class Copies:
         to_user = np.linalg.inv(svg_to_arm[:, :2])
         right, down = to_user @ (0.0, -self.step_x_mm), to_user @ (-self.step_y_mm, 0.0)
         outlines = tuple(
-            replace(outline, beziers=frozen(outline.beziers + (column * right + row * down)))
+            _moved(outline, column * right + row * down)
             for row in range(self.rows)
             for column in range(self.columns)
             for outline in drawing.outlines
         )
-        return replace(drawing, outlines=outlines)
+        return replace(drawing, outlines=outlines, scene=None)
+
+
+def _moved(outline: Outline, by: FloatArray) -> Outline:
+    gap = None if outline.gap is None else frozen(outline.gap + by)
+    return replace(outline, beziers=frozen(outline.beziers + by), gap=gap)

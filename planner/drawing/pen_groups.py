@@ -40,18 +40,7 @@ def chosen_layers(drawing: Drawing, layers: Sequence[str] | None) -> Drawing:
     """The drawing with the layers that are wanted: by name, or by the number that their names begin with. Layers whose
     names begin with `%` are left out unless they are named. Errors: UsageError for one that is not there."""
     names = layer_names(drawing)
-    if layers is None:
-        wanted = {name for name in names if LayerName.of(name).is_drawn}
-    else:
-        wanted = set()
-        for layer in layers:
-            found = {name for name in names if layer == name} or {
-                name for name in names if layer.isdecimal() and LayerName.of(name).number == int(layer[:9])
-            }
-            if not found:
-                there = ", ".join(name or "(no layer)" for name in names)
-                raise UsageError(f"{drawing.source} has no layer '{layer:.40}'; it has {there}")
-            wanted |= found
+    wanted = wanted_layers(drawing, layers)
     if len(wanted) == len(names):
         return drawing
     skipped = dict(drawing.skipped)
@@ -61,7 +50,24 @@ def chosen_layers(drawing: Drawing, layers: Sequence[str] | None) -> Drawing:
     outlines = tuple(outline for outline in drawing.outlines if outline.layer in wanted)
     if not outlines:
         raise UsageError(f"{drawing.source} has nothing in {counted(len(wanted), 'chosen layer')}")
-    return replace(drawing, outlines=outlines, skipped=skipped)
+    return replace(drawing, outlines=outlines, skipped=skipped, scene=None)
+
+
+def wanted_layers(drawing: Drawing, layers: Sequence[str] | None) -> set[str]:
+    """The names of those. Errors: UsageError for one that is not there."""
+    names = layer_names(drawing)
+    if layers is None:
+        return {name for name in names if LayerName.of(name).is_drawn}
+    wanted: set[str] = set()
+    for layer in layers:
+        found = {name for name in names if layer == name} or {
+            name for name in names if layer.isdecimal() and LayerName.of(name).number == int(layer[:9])
+        }
+        if not found:
+            there = ", ".join(name or "(no layer)" for name in names)
+            raise UsageError(f"{drawing.source} has no layer '{layer:.40}'; it has {there}")
+        wanted |= found
+    return wanted
 
 
 def layer_names(drawing: Drawing) -> list[str]:
@@ -74,7 +80,7 @@ def only(drawing: Drawing, by: GroupBy, kinds: Sequence[str], mm_per_unit: float
     outlines = tuple(outline for outline in drawing.outlines if kind_of(outline, by, mm_per_unit) in kinds)
     if not outlines:
         raise UsageError(f"{drawing.source} has nothing of {by} {', '.join(kinds)}")
-    return replace(drawing, outlines=outlines)
+    return replace(drawing, outlines=outlines, scene=None)
 
 
 def kind_of(outline: Outline, by: GroupBy, mm_per_unit: float) -> str:

@@ -1,0 +1,64 @@
+"""What a document shows, in the order in which it is painted."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from planner.arrays import FloatArray
+from planner.drawing.subpath import Subpath
+
+if TYPE_CHECKING:  # Trajectories know of drawings, and are played on computers that have no Shapely.
+    from shapely.geometry.base import BaseGeometry
+
+if TYPE_CHECKING:
+    Colour = tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Paint:
+    """colour: sRGB, of a gradient the mean of its stops. is_opaque: whether it hides all that is under it."""
+
+    colour: Colour
+    is_opaque: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """width: in user units."""
+
+    paint: Paint
+    width: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Shape:
+    """Something painted, in the user units of the outermost `svg`, all transforms applied.
+
+    outline: the whole outline, what is filled. lines: what a pen would draw of it: its stroke with its dashes, or else
+    the edge of its fill, with the edges that close open subpaths wherever there is a fill; empty where only its fill
+    counts (to hide what is below). fill, stroke: None where there is none that can be seen. is_even_odd: the fill rule.
+    clips: regions in user units, all of which cut it. layer: the name of its layer, or "".
+    """
+
+    outline: tuple[Subpath, ...]
+    lines: tuple[Subpath, ...]
+    fill: Paint | None
+    is_even_odd: bool
+    stroke: Stroke | None
+    clips: tuple[BaseGeometry, ...]
+    layer: str
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Scene:
+    """shapes: in the order of painting. user_to_page: (2, 3), from user units to mm on the page, y down. page_mm: its
+    size. skipped: what is shown but is not, or not exactly, drawn, by kind. has_page: whether the file says how large
+    its page is."""
+
+    shapes: tuple[Shape, ...]
+    user_to_page: FloatArray
+    page_mm: tuple[float, float]
+    skipped: Counter[str]
+    has_page: bool = True
