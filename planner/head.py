@@ -14,6 +14,7 @@ from typing import IO, Any, NamedTuple
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.counted import counted
 from planner.drawing.copies import Copies
+from planner.drawing.fill_options import NO_FILL, FillOptions, fill_options
 from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.errors import TrajectoryFileError, UsageError
 from planner.pens import GroupBy, colour_of, hex_of
@@ -140,6 +141,7 @@ class Head:
     pen_changes: tuple[int, ...] = ()
     chosen: Chosen = ALL
     path_work: PathWork = NO_WORK
+    fill: FillOptions = NO_FILL
 
     def text(self) -> str:
         """The comment lines."""
@@ -196,6 +198,8 @@ class Head:
             )
             if value is not None and value != usual
         ]
+        if self.fill != NO_FILL:
+            entries.append(("fill", str(self.fill)))
         if self.left_out != NOTHING_LEFT_OUT:
             entries += [("left_out_mm", f"{self.left_out.length_mm:.6g}"), ("left_out_taps", str(self.left_out.taps))]
         entries += [
@@ -263,6 +267,7 @@ def read_head(name: str, file: IO[str]) -> tuple[Head, str, int]:
         *_pens(name, found),
         _chosen(name, found),
         _path_work(name, found),
+        _fill(name, found),
     )
     return head, line, number
 
@@ -342,6 +347,16 @@ def _chosen(name: str, found: Mapping[str, tuple[str, int]]) -> Chosen:
         if (key := f"only_{by}") in found:
             return Chosen(layers, by, _names(name, found, key))
     return Chosen(layers)
+
+
+def _fill(name: str, found: Mapping[str, tuple[str, int]]) -> FillOptions:
+    if "fill" not in found:
+        return NO_FILL
+    text, line = found["fill"]
+    try:
+        return fill_options(text)
+    except UsageError as error:
+        raise TrajectoryFileError(name, line, f"'# fill:': {error}") from None
 
 
 def _path_work(name: str, found: Mapping[str, tuple[str, int]]) -> PathWork:

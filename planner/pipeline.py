@@ -87,6 +87,7 @@ def plan(
         pen_changes=samples.pen_changes,
         chosen=Chosen(settings.layers),
         reading=settings.reading,
+        fill=settings.fill,
         path_work=PathWork(settings.join_mm, settings.dedup_mm, settings.simplify_mm, settings.passes),
     )
     verify(trajectory, arm)

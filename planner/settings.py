@@ -7,6 +7,7 @@ from enum import StrEnum
 from math import inf
 
 from planner.checked import number_in, one_of
+from planner.drawing.fill_options import NO_FILL, FillOptions
 from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.errors import UsageError
 from planner.paper_size import Orientation, PaperSize
@@ -128,6 +129,7 @@ class PlanSettings:
         min_length_mm: Shorter strokes are left out.
         passes: How often each line is drawn.
         keep_order: Strokes are drawn in the order of the drawing. reverse: in the opposite one.
+        fill: How areas are filled, and strokes that are wider than the pen's line.
         layers: Those that are drawn, by name or number; None: all but those that are not to be plotted.
         by: What tells which pen draws a line; None: one pen draws all, or the nearest of the `pens` in colour.
         pens: The pens that there are, in the order in which they draw.
@@ -164,6 +166,7 @@ class PlanSettings:
     passes: int = 1
     keep_order: bool = False
     reverse: bool = False
+    fill: FillOptions = NO_FILL
     layers: tuple[str, ...] | None = None
     by: GroupBy | None = None
     pens: tuple[Pen, ...] = ()
@@ -254,6 +257,8 @@ class PlanSettings:
             raise UsageError(f"layers are names, one at least, not {self.layers!r:.40}")
         if not all(isinstance(pen, Pen) for pen in self.pens):
             raise UsageError(f"pens are values of Pen, not {self.pens!r:.40}")
+        if not isinstance(self.fill, FillOptions):
+            raise UsageError(f"fill is a FillOptions, not {self.fill!r:.40}")
         if not isinstance(self.passes, int) or not 1 <= self.passes <= MOST_PASSES:
             raise UsageError(f"passes is a whole number, 1 to {MOST_PASSES}, not {self.passes!r:.40}")
         columns, rows = self.copies

@@ -13,6 +13,7 @@ import numpy as np
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from planner.drawing.drawing import Drawing
+from planner.drawing.fill_options import NO_FILL, FillOptions
 from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.drawing.pen_groups import chosen_layers, only
 from planner.errors import TrajectoryFileError, UsageError
@@ -69,6 +70,7 @@ class Trajectory:
         pen_changes: The samples, at rest away from the paper, at which each pen but the first is put in.
         chosen: What of the drawing was drawn.
         path_work: What was done to its lines beforehand.
+        fill: How its areas were filled.
         paper: Where the paper lies that arm millimetres are counted on, in the frame of the base.
         reading: How the drawing was read.
     """
@@ -92,6 +94,7 @@ class Trajectory:
     pen_changes: tuple[int, ...] = ()
     chosen: Chosen = ALL
     path_work: PathWork = NO_WORK
+    fill: FillOptions = NO_FILL
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Trajectory:
@@ -170,6 +173,7 @@ class Trajectory:
             self.pen_changes,
             self.chosen,
             self.path_work,
+            self.fill,
         )
 
     @property
@@ -266,6 +270,7 @@ def read_trajectory(source: Path) -> Trajectory:
         pen_changes=head.pen_changes,
         chosen=head.chosen,
         path_work=head.path_work,
+        fill=head.fill,
     )
 
 

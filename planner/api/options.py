@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import TypedDict
 
+from planner.drawing.fill_options import FillOptions
 from planner.drawing.options import ReadingOptions
 from planner.errors import UnknownOption, UsageError
 from planner.paper_size import PaperSize, paper_size
@@ -44,6 +45,7 @@ class PlanOptions(TypedDict, total=False):
     passes: int
     keep_order: bool
     reverse: bool
+    fill: FillOptions | Mapping[str, object]
     layers: tuple[str, ...] | None
     by: str | None
     pens: tuple[Pen, ...]
@@ -61,7 +63,7 @@ def settings_with(settings: PlanSettings | None, arm: str | None, options: PlanO
         raise UsageError(f"settings is a PlanSettings, not a value of type {type(settings).__name__}")
     require_known(options, [field.name for field in fields(PlanSettings)])
     changes: dict[str, object] = dict(options) if arm is None else {**options, "arm": arm}
-    parts: dict[str, type] = {"weights": ConfigurationWeights, "reading": ReadingOptions}
+    parts: dict[str, type] = {"weights": ConfigurationWeights, "reading": ReadingOptions, "fill": FillOptions}
     for name, kind in parts.items():
         value = changes.get(name)
         if isinstance(value, Mapping):

@@ -19,6 +19,7 @@ from planner.checking.repeats import most_repeated
 from planner.checking.wanted import WantedLines, wanted_lines
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
+from planner.drawing.flatten import flatten_all
 from planner.errors import UsageError
 from planner.head import NOTHING_LEFT_OUT, LeftOut
 from planner.trajectory import Trajectory
@@ -78,7 +79,21 @@ def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: Floa
 def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
     """The lines of what the header tells that was drawn, as often as it was."""
     affine, copies = user_to_arm(trajectory), trajectory.placement.copies
-    lines = wanted_lines(drawing, affine, FLATTENING_MM, told_by(trajectory.chosen, drawing, affine))
+    is_wanted = told_by(trajectory.chosen, drawing, affine)
+    if not trajectory.fill.draws_anything:
+        lines = wanted_lines(drawing, affine, FLATTENING_MM, is_wanted)
+    else:
+        from planner.drawing.fill.fill import fill_lines, is_wide
+
+        lines = wanted_lines(
+            drawing,
+            affine,
+            FLATTENING_MM,
+            lambda line: is_wanted(line) and not is_wide(line, trajectory.fill, affine),
+        )
+        filling = [line for line in fill_lines(drawing, trajectory.fill, affine) if is_wanted(line)]
+        within = flatten_all(filling, affine, FLATTENING_MM)
+        lines = WantedLines([*lines.allowed, *within], [*lines.required, *within])
     if copies is None:
         return lines
     # To the right on the paper is -y of the arm, down is -x.

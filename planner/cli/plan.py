@@ -31,6 +31,14 @@ from planner.cli.reading import add_reading_options, reading_of
 from planner.cli.report import check_report, write_report_of
 from planner.cli.terminal import print_lines, print_summary, print_warnings, progress
 from planner.cli.workers import add_workers_option
+from planner.drawing.fill_options import (
+    LEAST_SPACING_MM,
+    USUAL_SPACING_MM,
+    FillBy,
+    FillKind,
+    FillOptions,
+    WideStrokes,
+)
 from planner.errors import UsageError
 from planner.files import STANDARD
 from planner.paper_size import Orientation
@@ -168,6 +176,7 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
         passes=options.passes,
         keep_order=options.keep_order,
         reverse=options.reverse,
+        fill=fill_of(options),
         layers=options.layers,
         by=None if options.by is None else GroupBy(options.by),
         pens=options.pens,
@@ -314,6 +323,7 @@ def add_arm_and_placement_options(parser: Parser) -> None:
     add_placement_options(parser.add_argument_group("placement"))
     add_pen_options(parser.add_argument_group("layers and pens"))
     add_path_options(parser.add_argument_group("lines"))
+    add_fill_options(parser.add_argument_group("fills"))
 
 
 def add_pen_options(pens: argparse._ArgumentGroup) -> None:
@@ -337,6 +347,56 @@ def add_pen_options(pens: argparse._ArgumentGroup) -> None:
         metavar="FILE",
         help="the pens that there are: tables [[pen]] with name, colour, width_mm, speed_mm_s, lift_mm,"
         " lowering_speed_mm_s, layers; each draws the layers it names, or the colours or widths nearest to it",
+    )
+
+
+def add_fill_options(fills: argparse._ArgumentGroup) -> None:
+    """The options that say how areas are filled."""
+    default = PlanSettings().fill
+    fills.add_argument(
+        "--fill",
+        choices=[kind.value for kind in FillKind],
+        default=default.kind.value,
+        help="lines across areas that the drawing fills (default: their edges alone)",
+    )
+    fills.add_argument(
+        "--fill-angle", type=angle_deg, default=default.angle_deg, metavar="DEGREES", help="(default: %(default)g)"
+    )
+    fills.add_argument(
+        "--fill-spacing",
+        type=length_mm(minimum_mm=LEAST_SPACING_MM),
+        metavar="LENGTH",
+        help=f"between lines (default: the width of the finest of --pens, or {USUAL_SPACING_MM:g} mm)",
+    )
+    fills.add_argument(
+        "--fill-inset", type=length_mm(zero=True), metavar="LENGTH", help="from the edge (default: half the spacing)"
+    )
+    fills.add_argument(
+        "--fill-by",
+        choices=[by.value for by in FillBy],
+        default=default.by.value,
+        help="lightness: darker is denser; colour: each has an angle of its own (default: all are alike)",
+    )
+    fills.add_argument(
+        "--stroke-width",
+        choices=[how.value for how in WideStrokes],
+        default=default.wide_strokes.value,
+        help="strokes wider than the pen's line (the spacing) are drawn once, or in passes side by side"
+        " (default: %(default)s)",
+    )
+
+
+def fill_of(options: argparse.Namespace) -> FillOptions:
+    """The fill that options from `add_fill_options` amount to."""
+    widths_mm = [pen.width_mm for pen in options.pens if pen.width_mm]
+    usual_mm = max(min(widths_mm, default=USUAL_SPACING_MM), LEAST_SPACING_MM)
+    return FillOptions(
+        FillKind(options.fill),
+        options.fill_angle,
+        usual_mm if options.fill_spacing is None else options.fill_spacing,
+        options.fill_inset,
+        FillBy(options.fill_by),
+        WideStrokes(options.stroke_width),
     )
 
 

@@ -12,8 +12,10 @@ import numpy as np
 
 from planner.affine import compose, rotation
 from planner.arrays import FloatArray, frozen
+from planner.counted import counted
 from planner.drawing.copies import Copies
 from planner.drawing.drawing import Drawing
+from planner.drawing.fill_options import FillKind
 from planner.drawing.flatten import extent
 from planner.errors import DoesNotFit, UsageError
 from planner.head import Placement
@@ -96,10 +98,15 @@ def placed(drawing: Drawing, canvas: Canvas, settings: PlanSettings) -> Placed:
         mirror=settings.mirror,
         copies=copies if copies.count > 1 else None,
     )
+    if settings.fill.draws_anything:
+        from planner.drawing.fill.fill import with_fills
+
+        drawing = with_fills(drawing, settings.fill, svg_to_arm)
+    hints = _turning(box.size, cell, factor, settings.rotate_deg) if settings.is_fitted else []
+    hints += _filling_hint(drawing) if settings.fill.kind is FillKind.NONE else []
     width, height = factor * ink.size
-    hint = _turning(box.size, cell, factor, settings.rotate_deg) if settings.is_fitted else ()
     size_mm = float(width), float(height)
-    return Placed(svg_to_arm, copies.of(drawing, svg_to_arm), told, factor, size_mm, board, hint)
+    return Placed(svg_to_arm, copies.of(drawing, svg_to_arm), told, factor, size_mm, board, tuple(hints))
 
 
 def _page_box(drawing: Drawing, turn: FloatArray) -> _Box:
@@ -158,7 +165,16 @@ def _beyond(inked: _Box, board: Board, canvas: Canvas) -> str:
     )
 
 
-def _turning(size: FloatArray, cell: FloatArray, factor: float, rotate_deg: float) -> tuple[str, ...]:
+def _turning(size: FloatArray, cell: FloatArray, factor: float, rotate_deg: float) -> list[str]:
     larger = _filling(size[::-1], cell) / factor
     other_deg = (rotate_deg + 90.0) % 180.0
-    return (f"--rotate {other_deg:g} would make it {larger:.2g} times as large",) if larger >= _WORTH_A_HINT else ()
+    return [f"--rotate {other_deg:g} would make it {larger:.2g} times as large"] if larger >= _WORTH_A_HINT else []
+
+
+def _filling_hint(drawing: Drawing) -> list[str]:
+    if drawing.scene is None:
+        return []
+    from planner.drawing.fill.fill import n_unfilled
+
+    n_filled = n_unfilled(drawing)
+    return [f"{counted(n_filled, 'filled shape')} drawn by the edge alone; --fill hatch fills"] if n_filled else []
