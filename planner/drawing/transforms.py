@@ -14,7 +14,8 @@ import numpy as np
 
 from planner.affine import compose, rotation
 from planner.arrays import FloatArray, frozen
-from planner.drawing.style.style import Axis, Style
+from planner.drawing.style.style import Style
+from planner.drawing.style.units import Axis
 
 Box = tuple[float, float, float, float]
 """x, y, width, height."""

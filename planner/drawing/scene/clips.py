@@ -14,14 +14,15 @@ from planner.drawing.cut.region import region
 from planner.drawing.drawing import Outline
 from planner.drawing.flatten import flatten_all
 from planner.drawing.scene.basic_shapes import basic_shape
-from planner.drawing.scene.boxes import corners_of
-from planner.drawing.scene.place import NESTING_LIMIT, Clipped, Inside, Leaf, Place, Window
+from planner.drawing.scene.boxes import window_region
+from planner.drawing.scene.place import NESTING_LIMIT, Clipped, Leaf, Place, Window, resource_place
 from planner.drawing.scene.references import by_href, by_url
 from planner.drawing.scene.shape import Paint, Shape
 from planner.drawing.scene.walk import Tree, attribute_length, box_of, leaves
 from planner.drawing.shapes import SHAPES
 from planner.drawing.style.colour import parse_url
-from planner.drawing.style.style import Axis, Style
+from planner.drawing.style.style import Style
+from planner.drawing.style.units import Axis
 from planner.drawing.subpath import Subpath
 from planner.drawing.transforms import IDENTITY, Box, local_transform, scaling, translation
 from planner.drawing.xml_tree import Element
@@ -50,11 +51,19 @@ class Clips:
         found: list[BaseGeometry] = []
         for clip in clips:
             if clip not in self._known:
-                self._known[clip] = (
-                    (window_region(clip),) if isinstance(clip, Window) else tuple(self._of_element(clip))
-                )
+                self._known[clip] = (window_region(clip),) if isinstance(clip, Window) else self._checked(clip)
             found.extend(self._known[clip])
         return tuple(found)
+
+    def _checked(self, clipped: Clipped) -> tuple[BaseGeometry, ...]:
+        """Coordinates beyond all measure can be too much for geometry: what they clip is drawn whole, and counted."""
+        from shapely.errors import ShapelyError
+
+        try:
+            return tuple(self._of_element(clipped))
+        except ShapelyError:
+            self._tree.work.skipped["clip path that cannot be worked out"] += 1
+            return ()
 
     def _of_element(self, clipped: Clipped) -> Iterable[BaseGeometry]:
         style = clipped.style
@@ -170,34 +179,13 @@ class _Lazy:
     """A box that is worked out when it is asked for first."""
 
     def __init__(self, make: Callable[[], Box]) -> None:
-        self._make, self._made = make, None
+        self._make = make
+        self._made: Box | None = None
 
     def __call__(self) -> Box:
         if self._made is None:
             self._made = self._make()
         return self._made
-
-
-def resource_place(
-    element: Element, style: Style, place: Place, to_user: FloatArray, viewport: tuple[float, float]
-) -> Place:
-    """The place of what an element shows only where another one, at `place`, refers to it."""
-    depth = place.inside.depth + 1 if place.inside else 1
-    return Place(
-        to_user,
-        style,
-        viewport,
-        layer=place.layer,
-        has_layer=True,
-        inside=Inside(element, place.inside, depth),
-        nesting=place.nesting + 1,
-    )
-
-
-def window_region(window: Window) -> BaseGeometry:
-    import shapely
-
-    return shapely.Polygon(corners_of(window.box, window.to_user))
 
 
 def finite(subpaths: Iterable[Subpath]) -> list[Subpath]:
@@ -212,7 +200,8 @@ def _seen_through(shapes: Sequence[Shape], is_luminance: bool) -> tuple[BaseGeom
     """Where a mask lets anything through, and whether anywhere it does so in part only."""
     import shapely
 
-    area, has_greys = shapely.Polygon(), False
+    area: BaseGeometry = shapely.Polygon()
+    has_greys = False
     for shape in shapes:
         for paint, painted in _painted(shape):
             painted = shapely.intersection_all([painted, *shape.clips])

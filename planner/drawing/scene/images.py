@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from urllib.parse import unquote_to_bytes
 
 from planner.affine import compose
+from planner.drawing.scene.page import FALLBACK, OwnSize, own_size, size_for_percentages
 from planner.drawing.scene.place import NESTING_LIMIT, Leaf, Place, Window
 from planner.drawing.scene.references import href
-from planner.drawing.scene.page import FALLBACK, OwnSize, own_size, size_for_percentages
 from planner.drawing.scene.viewport import fitted
 from planner.drawing.scene.walk import Tree, entered, hides_overflow, in_viewport, leaves
 from planner.drawing.source import SIZE_LIMIT_BYTES

@@ -54,12 +54,13 @@ class _Mixer:
 
     def _seen(self, colours: list[Rgba]) -> Paint | None:
         """A paint of one or more colours, in the mean of them; None where all of them are transparent."""
-        alphas = np.array([colour.alpha for colour in colours])
-        if alphas.max(initial=0.0) <= 0.0:
+        if not any(colour.alpha > 0.0 for colour in colours):
             return None
-        red, green, blue = np.mean([(one.red, one.green, one.blue) for one in colours], axis=0)
-        colour = (round(float(red)), round(float(green)), round(float(blue)))
-        return Paint(colour, bool(self._opacity >= 1.0 and alphas.min() >= 1.0))
+        red, green, blue = (
+            round(sum(values) / len(colours))
+            for values in zip(*((one.red, one.green, one.blue) for one in colours), strict=True)
+        )
+        return Paint((red, green, blue), self._opacity >= 1.0 and all(colour.alpha >= 1.0 for colour in colours))
 
     def _referenced(self, value: PaintValue) -> AnyPaint:
         target = by_url(self._tree.document, value.url, "pattern", *_GRADIENTS)

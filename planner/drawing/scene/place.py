@@ -22,18 +22,20 @@ NESTING_LIMIT = 12
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Inside:
-    """The elements that something is shown inside of, through `use` and other references as well, innermost first."""
+    """The elements that something is shown inside of, through `use` and other references as well, innermost first.
+    is_resource: shown only by reference, such as a marker, in a tree of its own."""
 
     element: Element
     outer: Inside | None
     depth: int
+    is_resource: bool = False
 
-    def holds(self, element: Element) -> bool:
+    def holds(self, element: Element, in_this_tree: bool = False) -> bool:
         at: Inside | None = self
         while at is not None:
             if at.element is element:
                 return True
-            at = at.outer
+            at = None if in_this_tree and at.is_resource else at.outer
         return False
 
 
@@ -81,6 +83,22 @@ class Leaf:
     element: Element
     style: Style
     place: Place
+
+
+def resource_place(
+    element: Element, style: Style, place: Place, to_user: FloatArray, viewport: tuple[float, float]
+) -> Place:
+    """The place of what an element shows only where another one, at `place`, refers to it."""
+    depth = place.inside.depth + 1 if place.inside else 1
+    return Place(
+        to_user,
+        style,
+        viewport,
+        layer=place.layer,
+        has_layer=True,
+        inside=Inside(element, place.inside, depth, is_resource=True),
+        nesting=place.nesting + 1,
+    )
 
 
 @dataclass(slots=True)
