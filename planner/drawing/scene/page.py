@@ -48,7 +48,7 @@ class OwnSize:
         return self.view_box is not None or (self.width is not None and self.height is not None)
 
 
-def own_size(root: Element, style: Style, dpi: float = 96.0) -> OwnSize:
+def own_size(root: Element, style: Style, dpi: float = 96.0, has_percentages: bool = True) -> OwnSize:
     """The size of a document. `dpi` is how many pixels, which lengths without a unit are, go to an inch; millimetres
     and the like stay as long as they are. Percentages are of the view box."""
     view_box = parse_view_box(root.attributes.get("viewBox"))
@@ -62,9 +62,9 @@ def size_for_percentages(root: Element) -> tuple[float, float]:
     return view_box[2:] if view_box is not None else FALLBACK
 
 
-def _length(style: Style, name: Literal["width", "height"], has_view_box: bool, dpi: float) -> float | None:
+def _length(style: Style, name: Literal["width", "height"], has_percentages: bool, dpi: float) -> float | None:
     text = style[name]
-    if "%" in text and not has_view_box:
+    if "%" in text and not has_percentages:
         return None
     length = style.length(name, "x" if name == "width" else "y")
     if length is not None and _ABSOLUTE.search(text):
