@@ -13,8 +13,8 @@ from planner.drawing.subpath import Subpath
 from planner.drawing.text.context import TextContext
 from planner.drawing.xml_tree import Element
 
-_STEPS = 32
-"""Chords that a curve is measured by."""
+_STEPS, _MOST_CHORDS = 32, 1_000_000
+"""Chords that a curve is measured by, fewer where a path has very many curves."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -63,23 +63,27 @@ def text_path(element: Element, style: Style, context: TextContext) -> TextPath:
 
 
 def _start(element: Element, style: Style, target: Element, total: float) -> float:
-    said = element.attributes.get("startOffset", "0").strip()
+    said = element.attributes.get("startOffset", "").strip()
+    own = _number(target.attributes.get("pathLength", ""))
     if said.endswith("%"):
-        try:
-            return float(said[:-1]) / 100.0 * total
-        except ValueError:
-            return 0.0
+        return _number(said[:-1]) / 100.0 * total
     offset = style.in_units(said, "diagonal") or 0.0
-    try:
-        own = float(target.attributes.get("pathLength", "0"))
-    except ValueError:
-        own = 0.0
     return offset * total / own if own > 0.0 else offset
+
+
+def _number(text: str) -> float:
+    """0 where it is none."""
+    try:
+        value = float(text)
+    except ValueError:
+        return 0.0
+    return value if math.isfinite(value) else 0.0
 
 
 def measured(subpaths: list[Subpath]) -> tuple[FloatArray, FloatArray]:
     """Points along subpaths (n, 2), and the length up to each (n,)."""
-    t = np.linspace(0.0, 1.0, _STEPS + 1)[:, None]
+    n_curves = max(sum(len(subpath.beziers) for subpath in subpaths), 1)
+    t = np.linspace(0.0, 1.0, min(max(_MOST_CHORDS // n_curves, 1), _STEPS) + 1)[:, None]
     basis = np.concatenate(((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3), axis=1)
     points, lengths, total = [], [], 0.0
     for subpath in subpaths:
