@@ -35,7 +35,13 @@ _ARGUMENTS = {
 # A line may repeat its letter: where there are millions of commands, most are these.
 _LINES = {letter: re.compile(rf"(?:{letter}\s*)?" + 2 * _NUMBER) for letter in "Ll"}
 _ROUNDING = 1e-13
+CURVE_LIMIT = 2_500_000
+"""Of a whole drawing, and so of each path."""
 Handle = tuple[float, float]
+
+
+class TooManyCurves(Exception):
+    """A path of more lines and curves than the limit, arcs counted as the curves that they become."""
 
 
 def has_unusable_numbers(data: str) -> bool:
@@ -52,7 +58,8 @@ def parse_path(data: str) -> list[Subpath]:
     """The subpaths of path data, empty where it begins with an error.
 
     Every segment is a curve, those of zero length too; a subpath that `Z` closes ends with the closing one. An `M` with
-    nothing after it is one curve of four equal points whose end is no vertex: it has a place and is not drawn.
+    nothing after it is one curve of four equal points whose end is no vertex: it has a place and is not drawn. Errors:
+    TooManyCurves.
     """
     return _Reader(data).subpaths()
 
@@ -94,6 +101,8 @@ class Curves:
 
     def cubics(self, x0: float, y0: float, curves: list[Cubic], end: tuple[float, float]) -> None:
         """Consecutive cubics, of which the last one ends exactly at `end`, and alone in a vertex."""
+        if len(self.is_line) > CURVE_LIMIT:
+            raise TooManyCurves
         for curve in curves[:-1]:
             self.cubic(x0, y0, curve, is_vertex=False)
             x0, y0 = curve[4:]
@@ -162,6 +171,8 @@ class _Reader:
                 x += before_x
                 y += before_y
             flat.extend((before_x, before_y, before_x, before_y, x, y, x, y))
+            if len(flat) > 8 * CURVE_LIMIT:
+                raise TooManyCurves
             at = match.end()
             match = pattern.match(data, at)
         n_lines = (len(flat) - n_before) // 8
