@@ -99,11 +99,13 @@ LINE = '<path stroke="red" d="M1 2L3 4" {}/>'
             [[(11, 2), (13, 4)], [(1, 3), (3, 5)]],
         ),
         (
-            '<symbol id="s" viewBox="0 0 1 1"><path fill="none" stroke="red" d="M0 0L1 1"/></symbol><use href="#s" width="10" height="10"/>',
+            '<symbol id="s" viewBox="0 0 1 1"><path fill="none" stroke="red" d="M0 0L1 1"/></symbol>'
+            '<use href="#s" width="10" height="10"/>',
             [[(0, 0), (10, 10)]],
         ),
         (
-            '<svg x="10" y="10" width="20" height="20" viewBox="0 0 2 2"><path fill="none" stroke="red" d="M0 0L2 2"/></svg>',
+            '<svg x="10" y="10" width="20" height="20" viewBox="0 0 2 2">'
+            '<path fill="none" stroke="red" d="M0 0L2 2"/></svg>',
             [[(10, 10), (30, 30)]],
         ),
         (
@@ -116,7 +118,8 @@ LINE = '<path stroke="red" d="M1 2L3 4" {}/>'
             [[(1, 2), (3, 4)]],
         ),
         (
-            '<g visibility="hidden"><path stroke="red" d="M8 8L9 9"/><path visibility="visible" stroke="red" d="M1 2L3 4"/></g>',
+            '<g visibility="hidden"><path stroke="red" d="M8 8L9 9"/>'
+            '<path visibility="visible" stroke="red" d="M1 2L3 4"/></g>',
             [[(1, 2), (3, 4)]],
         ),
         ('<g opacity="0"><path stroke="red" d="M8 8L9 9"/></g>' + LINE.format(""), [[(1, 2), (3, 4)]]),
@@ -124,7 +127,8 @@ LINE = '<path stroke="red" d="M1 2L3 4" {}/>'
         ('<path fill="none" stroke="red" stroke-width="0" d="M8 8L9 9"/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
         ('<path fill-opacity="0" d="M8 8L9 9"/>' + LINE.format(""), [[(1, 2), (3, 4)]]),
         (
-            '<marker id="m"><path stroke="red" d="M0 0L1 0"/></marker><path marker-end="url(#m)" stroke="red" d="M1 2L3 4"/>',
+            '<marker id="m"><path stroke="red" d="M0 0L1 0"/></marker>'
+            '<path marker-end="url(#m)" stroke="red" d="M1 2L3 4"/>',
             [[(1, 2), (3, 4)], [(3, 4), (4, 4)]],
         ),
         (
@@ -149,7 +153,8 @@ def test_a_subpath_of_no_length_is_a_tap(tmp_path: Path, data: str) -> None:
 def test_curves_of_an_outline_follow_each_other(tmp_path: Path) -> None:
     found = drawing(
         tmp_path,
-        '<rect x="3" y="4" width="20" height="10" rx="3"/><path fill="none" stroke="red" d="M1 1Q5 5 9 1A3 4 5 0 1 20 30z"/>',
+        '<rect x="3" y="4" width="20" height="10" rx="3"/>'
+        '<path fill="none" stroke="red" d="M1 1Q5 5 9 1A3 4 5 0 1 20 30z"/>',
     )
     for outline in found.outlines:
         assert np.array_equal(outline.beziers[1:, 0], outline.beziers[:-1, 3])
@@ -183,7 +188,8 @@ def test_rotated_arc_has_the_radii_and_sweep_of_the_specification(tmp_path: Path
     # From (0, 0) to (10, 0) the radii are too small: the chord becomes a diameter, above it where sweep is 1.
     found = drawing(
         tmp_path,
-        '<path fill="none" stroke="red" d="M0 0A1 1 30 0 1 10 0"/><path fill="none" stroke="red" d="M0 0A1 1 0 0 0 10 0"/>',
+        '<path fill="none" stroke="red" d="M0 0A1 1 30 0 1 10 0"/>'
+        '<path fill="none" stroke="red" d="M0 0A1 1 0 0 0 10 0"/>',
     )
     over, under = (along(Drawing("", (outline,), IDENTITY, (1, 1))) for outline in found.outlines)
     for points in (over, under):
@@ -265,7 +271,8 @@ def test_page(tmp_path: Path, attributes: str, page_px: tuple[float, float], use
         ("<foreignObject width='9' height='9'><p>a</p></foreignObject>", {"foreignObject": 1}),
         ('<path d="M1 1L9 9" stroke="red" filter="blur(2px)"/>', {"filter": 1}),
         (
-            '<clipPath id="c"><rect width="5" height="5"/></clipPath><path clip-path="url(#c)" stroke="red" d="M1 1L4 4"/>',
+            '<clipPath id="c"><rect width="5" height="5"/></clipPath>'
+            '<path clip-path="url(#c)" stroke="red" d="M1 1L4 4"/>',
             {},
         ),
         (
@@ -273,7 +280,8 @@ def test_page(tmp_path: Path, attributes: str, page_px: tuple[float, float], use
             {},
         ),
         (
-            '<mask id="m"><rect width="5" height="5" fill="#888"/></mask><path mask="url(#m)" stroke="red" d="M1 1L9 9"/>',
+            '<mask id="m"><rect width="5" height="5" fill="#888"/></mask>'
+            '<path mask="url(#m)" stroke="red" d="M1 1L9 9"/>',
             {"mask with greys": 1},
         ),
         ('<path fill="none" stroke="red" d="M1 1L1e300 5"/>', {"path with unusable numbers": 1}),
@@ -330,7 +338,8 @@ BILLION = "".join(f'<g id="g{i}">' + f'<use href="#g{i - 1}"/>' * 10 + "</g>" fo
         (f'{ROOT}<path id="g0" d="M0 0L1 1"/>{BILLION}</svg>'.encode(), "multiply"),
         ((ROOT + "<g>" * 5000 + "</g>" * 5000 + "</svg>").encode(), "deep"),
         (
-            b'<svg xmlns="http://www.w3.org/2000/svg" width="0" height="5"><path fill="none" stroke="red" d="M0 0L1 1"/></svg>',
+            b'<svg xmlns="http://www.w3.org/2000/svg" width="0" height="5">'
+            b'<path fill="none" stroke="red" d="M0 0L1 1"/></svg>',
             "width, height",
         ),
         (b"\x1f\x8b" + b"x" * 50, "gzip"),

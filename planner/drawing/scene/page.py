@@ -6,8 +6,6 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from planner.affine import compose
 from planner.arrays import FloatArray
 from planner.drawing.scene.viewport import fitted, parse_view_box

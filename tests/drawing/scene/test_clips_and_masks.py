@@ -19,7 +19,8 @@ ACROSS = '<path {} stroke="red" d="M0 50H100"/>'
             [[(10, 50), (19, 50)], [(30, 50), (39, 50)]],
         ),
         (
-            '<clipPath id="c" transform="translate(20)"><rect width="30" height="80" transform="scale(.5 1)"/></clipPath>',
+            '<clipPath id="c" transform="translate(20)">'
+            '<rect width="30" height="80" transform="scale(.5 1)"/></clipPath>',
             "",
             [[(20, 50), (35, 50)]],
         ),
@@ -121,7 +122,8 @@ def test_masks(mask: str, expected: list[Line], n_greys: int) -> None:
 
 def test_what_is_clipped_twice_is_in_both() -> None:
     body = (
-        '<clipPath id="c"><circle cx="50" cy="50" r="30"/></clipPath><clipPath id="d"><circle cx="80" cy="50" r="30"/></clipPath>'
-        + '<g clip-path="url(#c)"><g clip-path="url(#d)">{}</g></g>'
+        '<clipPath id="c"><circle cx="50" cy="50" r="30"/></clipPath><clipPath id="d">'
+        '<circle cx="80" cy="50" r="30"/></clipPath>'
+        '<g clip-path="url(#c)"><g clip-path="url(#d)">{}</g></g>'
     )
     assert length(body.format(ACROSS.format(""))) == pytest.approx(30.0, abs=1e-3)

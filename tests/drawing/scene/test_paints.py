@@ -30,7 +30,10 @@ OPEN = '<path {} d="M10 10H30V30H10"/>'
 )
 def test_paints_that_can_be_seen(attributes: str, colour: tuple[int, int, int], is_opaque: bool) -> None:
     stops = '<stop stop-color="red"/><stop stop-color="blue"/>'
-    defs = f'<linearGradient id="g">{stops}</linearGradient><radialGradient id="h" href="#g"/><pattern id="empty-pattern"/>'
+    defs = (
+        f'<linearGradient id="g">{stops}</linearGradient><radialGradient id="h" href="#g"/>'
+        '<pattern id="empty-pattern"/>'
+    )
     (shape,) = scene(defs + SQUARE.format(attributes)).shapes
     assert shape.fill is not None
     assert shape.fill.colour == pytest.approx(colour, abs=1) and shape.fill.is_opaque is is_opaque
@@ -91,7 +94,8 @@ def test_dashes_that_do_not_scale_are_measured_on_the_page() -> None:
         '<pattern id="p" width="10" height="10" patternUnits="userSpaceOnUse">{}</pattern>',
         '<pattern id="p" width=".5" height=".5">{}</pattern>',
         '<pattern id="p" width=".5" height=".5" viewBox="0 0 5 5"><g transform="scale(.5)">{}</g></pattern>',
-        '<pattern id="p" href="#q" width="10"/><pattern id="q" width="20" height="10" patternUnits="userSpaceOnUse">{}</pattern>',
+        '<pattern id="p" href="#q" width="10"/>'
+        '<pattern id="q" width="20" height="10" patternUnits="userSpaceOnUse">{}</pattern>',
         '<pattern id="p" width="5" height="5" patternUnits="userSpaceOnUse" patternTransform="scale(2)">'
         '<g transform="scale(.5)">{}</g></pattern>',
     ],
@@ -104,7 +108,10 @@ def test_patterns_are_their_lines_within_the_shape(pattern: str) -> None:
 
 def test_patterns_too_fine_for_a_pen_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(patterns, "TILE_LIMIT", 3)
-    pattern = '<pattern id="p" width="10" height="10" patternUnits="userSpaceOnUse"><path stroke="red" d="M0 5H10"/></pattern>'
+    pattern = (
+        '<pattern id="p" width="10" height="10" patternUnits="userSpaceOnUse">'
+        '<path stroke="red" d="M0 5H10"/></pattern>'
+    )
     found = drawing(pattern + SQUARE.format('fill="url(#p)"'))
     assert found.skipped == {"pattern of too many tiles": 1} and len(found.outlines) == 1
 
@@ -151,7 +158,10 @@ def test_markers(path: str, orient: str, name: str, expected: list[tuple[float, 
 
 
 def test_markers_scale_with_the_stroke_and_are_cut_to_their_box() -> None:
-    marker = '<marker id="m" markerWidth="2" markerHeight="2" refX="1" refY="1" viewBox="0 0 2 2"><path stroke="red" d="M0 1H9"/></marker>'
+    marker = (
+        '<marker id="m" markerWidth="2" markerHeight="2" refX="1" refY="1" viewBox="0 0 2 2">'
+        '<path stroke="red" d="M0 1H9"/></marker>'
+    )
     body = f'{marker}<path marker-end="url(#m)" stroke="red" stroke-width="4" d="M0 50H50"/>'
     assert lines(body) == [[(0, 50), (50, 50)], [(46, 50), (54, 50)]]
 
