@@ -53,10 +53,17 @@ def view_mm(points: Sequence[FloatArray], reach_mm: tuple[float, float] | None) 
     return low - margin, high + margin
 
 
-def place_axes(axes: Axes, low: FloatArray, high: FloatArray, width_em: float, colours: Colours) -> None:
+def place_axes(
+    axes: Axes,
+    low: FloatArray,
+    high: FloatArray,
+    width_em: float,
+    colours: Colours,
+    base_mm: tuple[float, float] = (0.0, 0.0),
+) -> None:
     """Axes as seen from behind the base, with the base marked: arm y grows to the left, arm x upwards.
 
-    width_em: of the axes, so that the ticks get room.
+    width_em: of the axes, so that the ticks get room. base_mm: where the base stands in the paper's frame.
     """
     axes.set_xlim(high[1], low[1])
     axes.set_ylim(low[0], high[0])
@@ -67,8 +74,8 @@ def place_axes(axes: Axes, low: FloatArray, high: FloatArray, width_em: float, c
     axes.set_xlabel("arm y (mm)")
     axes.set_ylabel("arm x (mm)")
     axes.plot(
-        0.0,
-        0.0,
+        base_mm[1],
+        base_mm[0],
         linestyle="none",
         marker="^",
         markersize=float(np.clip(0.12 * width_em, 4, 8)),
