@@ -120,8 +120,9 @@ class MujocoArm:
 
 
 def model_of(arm: Arm) -> str:
-    """MJCF of the DH chain, in the frame of the paper; the base stands upright. Row (theta, d, a, alpha) is a body at the end of the row before, turned by theta, whose
-    joint turns about z or slides along it; its links go d along z and then a along x. Joints are driven by position."""
+    """MJCF of the DH chain, in the frame of the paper; the base stands upright. Row (theta, d, a, alpha) is a body at
+    the end of the row before, turned by theta, whose joint turns about z or slides along it; its links go d along z and
+    then a along x. Joints are driven by position."""
     root = ElementTree.Element("mujoco", model=arm.name)
     ElementTree.SubElement(root, "compiler", angle="radian", autolimits="true")
     T_paper_base = arm.paper.T_paper_base

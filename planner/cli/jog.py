@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -13,13 +12,16 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, cast
 
 from planner.cli.files import output_file
-from planner.cli.jog_commands import COMMANDS, Keys, carry_out
+from planner.cli.jog_commands import COMMANDS, carry_out
+from planner.cli.jog_keyboard import Keyboard
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.terminal import print_lines, print_note
 from planner.errors import UsageError
+from planner.files import STANDARD
 
 if TYPE_CHECKING:
+    from hardware.compensation.servo_values import Calibration
     from hardware.drivers.driver import Driver
     from hardware.jog.jogging import Jogging
     from planner.arms.arm import Arm
@@ -42,24 +44,25 @@ def jog(arguments: list[str]) -> int:
     options = _parser().parse_args(arguments)
     _check(options)
 
-    from planner.arms.arm_file import load_arm
-
-    arm = load_arm(options.arm)
+    found = _Found(options.arm, options.output)
+    arm = found.before
     if options.imported:
         from planner.arms.lerobot import with_lerobot_calibration
 
         arm = with_lerobot_calibration(arm, Path(options.imported[1]))
         if not options.port and not options.script:
-            _write(options, arm)
+            found.write(arm)
             return 0
-    _jogged(options, arm)
+    _jogged(options, arm, found)
     return 0
 
 
 def _parser() -> Parser:
     parser = Parser("plan jog", _DESCRIPTION, _EPILOG)
     parser.add_argument("--arm", required=True, metavar="NAME|FILE", help="the arm as it is known so far")
-    parser.add_argument("-o", "--output", type=output_file, metavar="ARM.toml", help="what save writes")
+    parser.add_argument(
+        "-o", "--output", type=output_file, metavar="ARM.toml", help="what save writes (default: the file of --arm)"
+    )
     parser.add_argument(
         "--driver",
         default="sim",
@@ -70,6 +73,12 @@ def _parser() -> Parser:
     parser.add_argument("--baud", type=int, metavar="RATE", help="of the serial line (default: the controller's usual)")
     parser.add_argument(
         "--script", metavar="FILE", help="commands to carry out in the place of keys; - for standard input"
+    )
+    parser.add_argument(
+        "--from-middle",
+        action="store_true",
+        help="let hobby servos leap to the middle of their ranges, where the arm file has no [park] pose; without it "
+        "jog asks, and a script is refused",
     )
     parser.add_argument(
         "--import",
@@ -89,21 +98,23 @@ def _check(options: argparse.Namespace) -> None:
         raise UsageError(f"there is no driver '{options.driver}' to jog with; there are {', '.join(drivers)}")
     if options.imported and options.imported[0] != "lerobot":
         raise UsageError(f"--import {options.imported[0]}: only the calibration of lerobot can be read")
-    if options.imported and not options.output:
-        raise UsageError("--import needs -o, the arm file to write")
     if options.driver == SIMULATED and options.port:
         raise UsageError("a simulated arm is at no port; name what is there with --driver")
     if options.driver != SIMULATED and not options.port:
         raise UsageError(f"--driver {options.driver} needs --port; plan ports lists what is plugged in")
     if options.baud is not None and options.baud <= 0:
         raise UsageError(f"--baud {options.baud} is no speed of a line, such as 115200")
+    if options.output is None and options.arm.endswith(".toml"):
+        options.output = Path(options.arm)
+    if options.imported and not options.output:
+        raise UsageError("--import needs -o, the arm file to write")
     if options.output:
         if options.output.suffix != ".toml":
             raise UsageError(f"{options.output}: an arm file ends in .toml")
-        check_target(options.output, *([Path(options.arm)] if options.arm.endswith(".toml") else []))
+        check_target(options.output)
 
 
-def _jogged(options: argparse.Namespace, arm: Arm) -> None:
+def _jogged(options: argparse.Namespace, arm: Arm, found: _Found) -> None:
     from hardware.clock import InstantClock, WallClock
     from hardware.compensation.servo_values import own_calibration
     from hardware.drivers.table import SIMULATED, calibration_of, make_driver
@@ -111,10 +122,11 @@ def _jogged(options: argparse.Namespace, arm: Arm) -> None:
     from hardware.port import Line
     from hardware.simulation.simulated_arm import SimulatedArm
     from planner.cli.controls import breaking_off
+    from planner.cli.run_claims import alone_on
 
-    calibration = own_calibration(arm) if options.driver == SIMULATED else calibration_of(options.driver, arm)
-    assert calibration is not None
     simulated = options.driver == SIMULATED
+    calibration = own_calibration(arm) if simulated else calibration_of(options.driver, arm)
+    assert calibration is not None
     clock = InstantClock() if simulated else WallClock()
     # Its servos' ranges stop it: limits may turn out to be elsewhere.
     free = replace(
@@ -129,15 +141,53 @@ def _jogged(options: argparse.Namespace, arm: Arm) -> None:
         if simulated
         else make_driver(options.driver, arm, Line(options.port, options.baud), clock)
     )
-    with breaking_off(), closing(driver):
-        jogging = Jogging(arm, driver, calibration, clock)
-        with _commands(options) as commands:
-            try:
-                jogging.start()
-                _follow(commands, jogging, lambda: _write(options, jogging.arm), by_script=bool(options.script))
-            except KeyboardInterrupt:
-                driver.emergency_stop()
-                raise
+    with (
+        breaking_off(),
+        alone_on(options.port, f"jogging {arm.name}"),
+        closing(driver),
+        _keyboard(options) as keyboard,
+    ):
+        commands = keyboard.commands() if keyboard else _lines(options.script)
+        jogging = Jogging(arm, driver, calibration, clock, keyboard.watch if keyboard else lambda: None)
+        driver.open()
+        if not simulated:
+            _announce(options, arm, calibration, keyboard)
+        try:
+            jogging.start()
+            _follow(commands, jogging, lambda: found.write(jogging.arm), by_script=keyboard is None)
+        except KeyboardInterrupt:
+            driver.emergency_stop()
+            print_note("stopped: the arm holds where it is")
+            raise
+        finally:
+            if not found.holds(jogging.arm):
+                print_note("what was found since it was saved last is in no file")
+
+
+def _announce(options: argparse.Namespace, arm: Arm, calibration: Calibration, keyboard: Keyboard | None) -> None:
+    """Say how the servos begin to move, and make sure that somebody wants that where they may leap. Errors: UsageError
+    where nobody does."""
+    from hardware.drivers.table import MEASURE_POSITIONS
+    from hardware.jog.jogging import start_of
+    from hardware.motion.slow_transfer import in_words
+
+    where = "the park pose" if arm.park else "the middle of their ranges"
+    pose = f"{where} ({in_words(arm, start_of(arm, calibration))})"
+    if options.driver in MEASURE_POSITIONS:
+        print_note(f"the servos go slowly from where they are to {pose}")
+        return
+    if arm.park is not None:
+        print_note(f"the position of the arm is not known: its servos are attached at {pose}")
+        return
+    leap = f"the position of the arm is not known and its file has no [park] pose: its servos leap to {pose}"
+    if options.from_middle:
+        print_note(leap)
+        return
+    if keyboard is None:
+        raise UsageError(f"{leap}; bring the arm near that by hand, keep clear, and say --from-middle")
+    print_note(f"{leap}; bring the arm near that by hand, keep clear, and press y")
+    if not keyboard.agrees():
+        raise UsageError("nobody pressed y: nothing was moved")
 
 
 def _follow(commands: Iterator[str], jogging: Jogging, save: Callable[[], None], *, by_script: bool) -> None:
@@ -154,59 +204,60 @@ def _follow(commands: Iterator[str], jogging: Jogging, save: Callable[[], None],
 
 
 @contextmanager
-def _commands(options: argparse.Namespace) -> Iterator[Iterator[str]]:
-    """Lines of a script, or what keys stand for. Errors: UsageError."""
-    if options.script and options.script != "-":
-        try:
-            lines = Path(options.script).read_text(encoding="utf-8").splitlines()
-        except (OSError, UnicodeDecodeError) as error:
-            raise UsageError(
-                f"{options.script}: cannot be read: {getattr(error, 'strerror', None) or error}"
-            ) from error
-        yield iter(lines)
-        return
+def _keyboard(options: argparse.Namespace) -> Iterator[Keyboard | None]:
+    """None for a script, or where standard input is no terminal."""
     if options.script or not sys.stdin.isatty():
-        options.script = "-"
-        yield iter(sys.stdin)
+        yield None
         return
     from planner.cli.controls import Controls
 
     print_note(COMMANDS[COMMANDS.index("keys:") :])
-    keys = Keys()
     with Controls().keyboard():
-        yield (command for key in _pressed(sys.stdin.fileno()) if (command := keys.command(key)) is not None)
+        yield Keyboard(sys.stdin.fileno())
 
 
-def _pressed(terminal: int) -> Iterator[str]:
-    """Keys, until the terminal is gone; what arrows and function keys arrive as is passed over."""
-    from planner.cli.controls import SEQUENCES
-
-    while True:
-        try:
-            arrived = os.read(terminal, 64)
-        except OSError:
-            arrived = b""
-        if not arrived:
-            return
-        yield from SEQUENCES.sub(b"", arrived).decode("utf-8", errors="replace")
+def _lines(script: str | None) -> Iterator[str]:
+    """Of a script, by name or on standard input. Errors: UsageError."""
+    if script is None or script == STANDARD:
+        return iter(sys.stdin)
+    try:
+        return iter(Path(script).read_text(encoding="utf-8").splitlines())
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(f"{script}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
 
 
-def _write(options: argparse.Namespace, arm: Arm) -> None:
-    from planner.arms.arm_file import read_arm_file
-    from planner.arms.arm_text import arm_toml
-    from planner.errors import ArmFileError
-    from planner.files import written_aside
+class _Found:
+    """The arm file as it is, and as it becomes by what is found. target: None where there is none to write."""
 
-    if not options.output:
-        raise UsageError("nowhere to save it: give -o ARM.toml")
-    text = arm_toml(arm, [f"{arm.name} as found by plan jog."])
-    with tempfile.TemporaryDirectory() as folder:
-        tried = Path(folder) / options.output.name
-        tried.write_text(text, encoding="utf-8")
-        try:
-            read_arm_file(tried)
-        except ArmFileError as error:
-            raise UsageError(f"what was found makes no arm file yet: {'; '.join(error.faults)}") from error
-    with written_aside(options.output) as file:
-        cast("IO[str]", file).write(text)
-    print_lines([f"wrote {options.output}"])
+    def __init__(self, name_or_file: str, target: Path | None) -> None:
+        """Errors: UnknownArm, ArmFileError."""
+        from planner.arms.arm_file import arm_file_text, load_arm
+
+        self.before = self._saved = load_arm(name_or_file)
+        self._text, self._target = arm_file_text(name_or_file), target
+
+    def holds(self, arm: Arm) -> bool:
+        """Whether all that was found of the arm is in the file."""
+        return arm is self._saved
+
+    def write(self, arm: Arm) -> None:
+        """Errors: UsageError, OutputError; then the file is as it was."""
+        from planner.arms.arm_edit import edited
+        from planner.arms.arm_file import read_arm_file
+        from planner.errors import ArmFileError
+        from planner.files import written_aside
+
+        if self._target is None:
+            raise UsageError("nowhere to save it: give -o ARM.toml")
+        text = edited(self._text, self.before, arm, f"{arm.name} as found by plan jog.")
+        with tempfile.TemporaryDirectory() as folder:
+            tried = Path(folder) / self._target.name
+            tried.write_text(text, encoding="utf-8")
+            try:
+                read_arm_file(tried)
+            except ArmFileError as error:
+                raise UsageError(f"what was found makes no arm file yet: {'; '.join(error.faults)}") from error
+        with written_aside(self._target) as file:
+            cast("IO[str]", file).write(text)
+        self._saved = arm
+        print_lines([f"wrote {self._target}"])

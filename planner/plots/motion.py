@@ -49,7 +49,7 @@ class Motion:
         return np.minimum(samples, self.trajectory.n_samples - 1)
 
     def nodes_mm(self, times_s: FloatArray) -> FloatArray:
-        """(n, n_nodes, 3) corners of the arm from the base to the tip in the paper's frame, joints moving evenly between
+        """(n, n_nodes, 3) corners of the arm from the base to the tip, in the paper's frame. Joints move evenly between
         samples."""
         at = np.clip(times_s * self.trajectory.rate_hz, 0, self.trajectory.n_samples - 1)
         before = np.minimum(np.floor(at).astype(np.int64), max(self.trajectory.n_samples - 2, 0))
