@@ -17,6 +17,7 @@ from planner.plots.sheet import Sheet
 
 PAPER_LEFT, PAPER_BOTTOM, PAPER_RIGHT = 5.4, 4.2, 1.8
 """Em around the axes of a paper, for the numbers on them."""
+BASE = "base of the arm"
 _TICK_EM = 5.5  # a label such as -120, with room beside it
 
 
@@ -82,7 +83,7 @@ def place_axes(
         color=colours.ink,
         markeredgewidth=0,
         zorder=4,
-        label="base of the arm",
+        label=BASE,
     )
 
 
