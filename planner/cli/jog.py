@@ -205,15 +205,17 @@ def _follow(commands: Iterator[str], jogging: Jogging, save: Callable[[], None],
 
 @contextmanager
 def _keyboard(options: argparse.Namespace) -> Iterator[Keyboard | None]:
-    """None for a script, or where standard input is no terminal."""
+    """None for a script, or where standard input is no terminal whose keys can be read one by one."""
     if options.script or not sys.stdin.isatty():
         yield None
         return
     from planner.cli.controls import Controls
 
-    print_note(COMMANDS[COMMANDS.index("keys:") :])
-    with Controls().keyboard():
-        yield Keyboard(sys.stdin.fileno())
+    controls = Controls()
+    with controls.keyboard():
+        if controls.has_keys:
+            print_note(COMMANDS[COMMANDS.index("keys:") :])
+        yield Keyboard(sys.stdin.fileno()) if controls.has_keys else None
 
 
 def _lines(script: str | None) -> Iterator[str]:

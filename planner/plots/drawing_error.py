@@ -21,7 +21,7 @@ def plot_drawing_error(
     wanted: Sequence[FloatArray], drawn: Sequence[FloatArray], heading: str, remark: str, look: Look = USUAL
 ) -> Figure:
     """Lines (n, 2) in arm millimetres: on the left those wanted, on the right those drawn over those wanted."""
-    low, high = view_mm([*wanted, *drawn], None)
+    low, high = view_mm([*wanted, *drawn], None, base=False)
     colours = look.colours
     layers = [
         ("wanted", [("wanted", wanted, colours.wanted, 1.0)]),

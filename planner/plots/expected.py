@@ -16,7 +16,7 @@ from planner.error_model.cause import Cause
 from planner.error_model.prediction import Along, Prediction
 from planner.plots.coloured_path import N_LEVELS
 from planner.plots.look import USUAL, Look
-from planner.plots.paper import BASE, PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, pieces, place_axes
+from planner.plots.paper import BASE, PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, pieces, place_axes, view_mm
 from planner.plots.sheet import Sheet
 
 _95_OF_100 = 1.96
@@ -33,7 +33,6 @@ _WIDTHS = 24
 _CELLS = 180
 _SMOOTH = 0.025
 """Of the longer side of the map: how far places speak for their neighbours, and half of how far the map goes."""
-_MARGIN = 0.03
 _AT_ONCE = 2_000
 
 
@@ -42,7 +41,8 @@ def plot_expected(prediction: Prediction, heading: str, remark: str, look: Look 
     on the right the expected error near the lines; below what it comes from."""
     along, colours = prediction.along, look.colours
     band_mm = _95_OF_100 * along.off_mm
-    low, high = _view_mm(along, band_mm)
+    around = [along.meant_mm + band_mm[:, None], along.meant_mm - band_mm[:, None], along.one_mm[along.one_inks]]
+    low, high = view_mm(around, None, base=False)
     causes = [cause for cause in prediction.causes if cause.mm >= _LEAST_MM][:_MOST_CAUSES]
     with look.style():
         sheet = Sheet(look)
@@ -62,15 +62,6 @@ def plot_expected(prediction: Prediction, heading: str, remark: str, look: Look 
             below = sheet.panel(PAPER_LEFT, _CAUSES_BOTTOM, sheet.width - PAPER_LEFT - PAPER_RIGHT, _ROW * len(causes))
             _causes(below, causes, look)
         return sheet.finish(heading, remark, legend, room=_TITLE)
-
-
-def _view_mm(along: Along, band_mm: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest x and y (2,): the lines are near, and the base of the arm may be out of sight."""
-    around = [along.meant_mm + band_mm[:, None], along.meant_mm - band_mm[:, None], along.one_mm[along.one_inks]]
-    everything = np.concatenate(around)
-    low, high = everything.min(axis=0), everything.max(axis=0)
-    margin = _MARGIN * float((high - low).max()) + 1.0
-    return low - margin, high + margin
 
 
 def _lines(axes: Axes, along: Along, band_mm: FloatArray, pt_per_mm: float, look: Look) -> list[Artist]:

@@ -45,10 +45,13 @@ def paper_panel(
     return axes
 
 
-def view_mm(points: Sequence[FloatArray], reach_mm: tuple[float, float] | None) -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest arm x and y (2,) to show: all points (n, 2), the base and the half ring, and a margin."""
+def view_mm(
+    points: Sequence[FloatArray], reach_mm: tuple[float, float] | None, *, base: bool = True
+) -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest arm x and y (2,) to show: all points (n, 2), the half ring, the base where it is to be seen,
+    and a margin."""
     ring = [] if reach_mm is None else [np.array([[0.0, -reach_mm[1]], [reach_mm[1], reach_mm[1]]])]
-    everything = np.concatenate([*points, *ring, np.zeros((1, 2))])
+    everything = np.concatenate([*points, *ring, np.zeros((1 if base else 0, 2))])
     low, high = np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)
     margin = max(0.03 * float((high - low).max()), 5.0)
     return low - margin, high + margin
