@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from planner.cli.files import output_file
 from planner.cli.jog_commands import COMMANDS, carry_out
@@ -25,17 +24,19 @@ if TYPE_CHECKING:
     from hardware.drivers.driver import Driver
     from hardware.jog.jogging import Jogging
     from planner.arms.arm import Arm
+    from planner.cli.jog_file import FoundArm
 
 _DESCRIPTION = """\
 Move one joint of an arm at a time, slowly and inside the ranges of its file, by keys or by the commands of a script, to
-find out which way it turns, where its zero and its limits are, and how high the paper lies. Writes an arm file."""
+find out which way it turns, where its zero and its limits are, and how high the paper lies. What was found is saved in
+the arm file, in which all else stays as it is."""
 
 _EPILOG = f"""\
 {COMMANDS}
 
 examples:
-  plan jog --arm my_arm.toml -o my_arm_1.toml --driver maestro --port /dev/ttyACM0
-  plan jog --arm my_arm.toml -o my_arm_1.toml --script moves.txt
+  plan jog --arm my_arm.toml --driver maestro --port /dev/ttyACM0
+  plan jog --arm drawing_arm -o my_arm.toml --script moves.txt
   plan jog --arm so101 -o my_so101.toml --import lerobot calibration.json"""
 
 
@@ -44,7 +45,9 @@ def jog(arguments: list[str]) -> int:
     options = _parser().parse_args(arguments)
     _check(options)
 
-    found = _Found(options.arm, options.output)
+    from planner.cli.jog_file import FoundArm
+
+    found = FoundArm(options.arm, options.output)
     arm = found.before
     if options.imported:
         from planner.arms.lerobot import with_lerobot_calibration
@@ -114,7 +117,7 @@ def _check(options: argparse.Namespace) -> None:
         check_target(options.output)
 
 
-def _jogged(options: argparse.Namespace, arm: Arm, found: _Found) -> None:
+def _jogged(options: argparse.Namespace, arm: Arm, found: FoundArm) -> None:
     from hardware.clock import InstantClock, WallClock
     from hardware.compensation.servo_values import own_calibration
     from hardware.drivers.table import SIMULATED, calibration_of, make_driver
@@ -226,40 +229,3 @@ def _lines(script: str | None) -> Iterator[str]:
         return iter(Path(script).read_text(encoding="utf-8").splitlines())
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"{script}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
-
-
-class _Found:
-    """The arm file as it is, and as it becomes by what is found. target: None where there is none to write."""
-
-    def __init__(self, name_or_file: str, target: Path | None) -> None:
-        """Errors: UnknownArm, ArmFileError."""
-        from planner.arms.arm_file import arm_file_text, load_arm
-
-        self.before = self._saved = load_arm(name_or_file)
-        self._text, self._target = arm_file_text(name_or_file), target
-
-    def holds(self, arm: Arm) -> bool:
-        """Whether all that was found of the arm is in the file."""
-        return arm is self._saved
-
-    def write(self, arm: Arm) -> None:
-        """Errors: UsageError, OutputError; then the file is as it was."""
-        from planner.arms.arm_edit import edited
-        from planner.arms.arm_file import read_arm_file
-        from planner.errors import ArmFileError
-        from planner.files import written_aside
-
-        if self._target is None:
-            raise UsageError("nowhere to save it: give -o ARM.toml")
-        text = edited(self._text, self.before, arm, f"{arm.name} as found by plan jog.")
-        with tempfile.TemporaryDirectory() as folder:
-            tried = Path(folder) / self._target.name
-            tried.write_text(text, encoding="utf-8")
-            try:
-                read_arm_file(tried)
-            except ArmFileError as error:
-                raise UsageError(f"what was found makes no arm file yet: {'; '.join(error.faults)}") from error
-        with written_aside(self._target) as file:
-            cast("IO[str]", file).write(text)
-        self._saved = arm
-        print_lines([f"wrote {self._target}"])

@@ -19,7 +19,7 @@ commands, one a line, # begins a comment:
   joint NAME|NUMBER   choose a joint
   move DEG            turn it by so much (mm for a slide)
   to DEG              turn it to there
-  reverse             it turned the wrong way: its direction is the other one
+  reverse             it turned the wrong way: its direction is the other one, and it stands where it did
   zero [DEG]          it stands at zero now, or at DEG
   low, high           it goes no further than where it stands now
   park                it is parked as it stands now
