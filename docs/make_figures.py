@@ -47,7 +47,7 @@ FIRST_HOUR = {
 }
 """What each is made of, of what the first hour leaves."""
 SYMPTOMS = "symptoms.png"
-_WIDTH_PX, _COLOURS, _QUALITY = 1000, 64, 70
+_WIDTH_PX, _COLOURS, _QUALITY = 1000, 256, 70
 
 
 def make(names: list[str]) -> None:
