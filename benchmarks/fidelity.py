@@ -89,8 +89,10 @@ def judge(browser: Chromium, file: Path, pictures: Path | None) -> Judgement:
     size_px = tuple(side / _MM_PER_PX for side in page_mm) if max(page_mm) > 0.0 else (300.0, 150.0)
     shown = reference(browser, data, (size_px[0], size_px[1]))
     verdict = _verdict(shown, plain, with_text)
-    text = "" if shown.error or with_text.error else compare_text(
-        [box * _MM_PER_PX for box in shown.text_boxes], _only_text(plain, with_text), page_mm
+    text = (
+        ""
+        if shown.error or with_text.error
+        else compare_text([box * _MM_PER_PX for box in shown.text_boxes], _only_text(plain, with_text), page_mm)
     )
     kind, measured = verdict
     said = with_text.error or ", ".join(sorted(with_text.skipped)) or "SILENT"
@@ -116,7 +118,9 @@ def _verdict(shown: Reference, plain: Drawn, with_text: Drawn) -> tuple[str, Ver
     shown_mm = tuple(side * _MM_PER_PX for side in shown.size_px)
     if max(abs(a - b) for a, b in zip(shown_mm, page_mm, strict=True)) > 0.005 * max(page_mm):
         return "page", None
-    measured = compare(lines, [line * _MM_PER_PX for line in shown.sure], plain.lines, page_mm, _NOT_SURE_SLACK if shown.notes else 1.0)
+    measured = compare(
+        lines, [line * _MM_PER_PX for line in shown.sure], plain.lines, page_mm, _NOT_SURE_SLACK if shown.notes else 1.0
+    )
     return measured.kind, measured
 
 
@@ -182,7 +186,9 @@ def _tables(found: list[Judgement]) -> Iterator[str]:
         count = Counter(one.kind for one in ones)
         texts = sum(one.text not in ("", "agree") for one in ones)
         silent = sum(is_wrong(one) and one.said == "SILENT" for one in ones)
-        yield f"| {folder} | {len(ones)} | " + " | ".join(str(count[kind]) for kind in kinds) + f" | {texts} | {silent} |"
+        yield (
+            f"| {folder} | {len(ones)} | " + " | ".join(str(count[kind]) for kind in kinds) + f" | {texts} | {silent} |"
+        )
     yield ""
     for (kind, said), ones in sorted(_by_cause(found).items(), key=lambda item: -len(item[1])):
         yield f"{len(ones)} {kind}: {said}"

@@ -17,9 +17,17 @@ from types import TracebackType
 from typing import Any, Self
 
 _FLAGS = (
-    "--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking"
-    " --disable-component-update --disable-sync --remote-debugging-pipe --hide-scrollbars"
-).split()
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--remote-debugging-pipe",
+    "--hide-scrollbars",
+)
 _HOST = "http://drawing.invalid/"
 _PAGE_PAD_PX = 64.0
 _LONGEST_PAPER_PX = 19000.0

@@ -78,8 +78,25 @@ function made(name, attributes = {}) {
     return element;
 }
 
+// Write out each `use` that shows a pattern fill, so that its tiles can be.
+function expandUses() {
+    for (const use of [...svg.querySelectorAll("use")]) {
+        const href = use.getAttribute("href") ?? use.getAttributeNS("http://www.w3.org/1999/xlink", "href");
+        const target = href && href.startsWith("#") ? byId(href.slice(1)) : null;
+        if (use.closest(containers) || target === null || ["svg", "symbol", "use"].includes(target.localName)) continue;
+        const group = made("g");
+        for (const { name, value } of use.attributes)
+            if (!["href", "xlink:href", "x", "y", "width", "height", "id"].includes(name)) group.setAttribute(name, value);
+        const moved = made("g", { transform: `translate(${use.x.baseVal.value} ${use.y.baseVal.value})` });
+        group.append(moved);
+        moved.append(target.cloneNode(true));
+        use.replaceWith(group);
+    }
+}
+
 // Write out the tiles of pattern fills as elements, clipped to the shape. How many could be, how many not.
 function expandPatterns() {
+    expandUses();
     let done = 0, left = 0;
     for (let round = 0; round < 3; ++round) {
         const todo = [...svg.querySelectorAll(shapes.join(","))].filter((element) =>

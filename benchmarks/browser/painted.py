@@ -56,13 +56,14 @@ def parts_of(line: FloatArray, region: BaseGeometry) -> list[FloatArray]:
     return [shapely.get_coordinates(part) for part in parts if part.length > 0.0]
 
 
-def painted(pdf: bytes) -> list[Painted]:
-    """All painted objects of the first page in order."""
+def painted(pdf: bytes, stretch: tuple[float, float] = (1.0, 1.0)) -> list[Painted]:
+    """All painted objects of the first page in order, x and y times `stretch`."""
     document = pypdfium2.PdfDocument(pdf)
     try:
         page = document[0]
         height = page.get_height()
-        flip = np.array([[1.0, 0.0, 0.0], [0.0, -1.0, height], [0.0, 0.0, 1.0]]) * [[_PX_PER_POINT], [_PX_PER_POINT], [1]]
+        across, down = (_PX_PER_POINT * factor for factor in stretch)
+        flip = np.array([[across, 0.0, 0.0], [0.0, -down, down * height], [0.0, 0.0, 1.0]])
         raw = page.raw
         reader = _Reader(_CHORD * _PX_PER_POINT * max(page.get_size()))
         count = pdfium.FPDFPage_CountObjects(raw)

@@ -1,4 +1,4 @@
-"""The lines that a pen would draw of what Chromium paints: edges of fills, middles of strokes, cut as the eye sees them.
+"""The lines that a pen would draw of what Chromium paints: edges of fills and middles of strokes, where they are seen.
 
 Chromium prints the drawing, and the paths of the print are the lines. What a print has no paths for is asked for
 separately: dashes are printed once without and once with their gaps, pattern fills are written out tile by tile and
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass, field
+from math import floor
 from pathlib import Path
 from typing import Any
 
@@ -40,8 +41,8 @@ _TOUCH = 0.03
 """Of the longer side of the page."""
 _DRAWN = ("fill", "stroke")
 _MUCH = 96.0
-_SAME_PATTERN = 0.01
-"""Share of the pixels that may differ where patterns are written out."""
+_SAME_PATTERN = 0.05
+"""Share of the inked pixels that may differ where patterns are written out."""
 
 
 @dataclass(eq=False, slots=True)
@@ -86,12 +87,12 @@ def reference(browser: Chromium, drawing: bytes, size_px: tuple[float, float]) -
     if facts["patterns"]:
         _expand_patterns(browser, found, scale)
     seen = _alpha(browser.screenshot(scale))
-    solid = _print(browser, _WITHOUT_TEXT + _SOLID)
+    solid = _print(browser, _WITHOUT_TEXT + _SOLID, found.size_px)
     if any(thing.kind == "image" for thing in solid):
         found.has_to_be_said.append("image")
-    lines = _lines(browser, [thing for thing in solid if thing.kind in _DRAWN], facts["dashed"])
+    lines = _lines(browser, [thing for thing in solid if thing.kind in _DRAWN], facts["dashed"], found.size_px)
     if facts["text"]:
-        texts = [_boxed(thing) for thing in _print(browser, _WITHOUT_SHAPES) if thing.kind != "image"]
+        texts = [_boxed(thing) for thing in _print(browser, _WITHOUT_SHAPES, found.size_px) if thing.kind != "image"]
         found.text_boxes = [part for thing in texts for part in thing.visible() if len(part) > 1]
     uncut = _cut(browser, lines, found, scale) if facts["cut"] else lines
     for line in uncut:
@@ -105,16 +106,18 @@ def _ask(browser: Chromium, expression: str) -> Any:
     return browser.run(f"(() => {{ {_SCRIPT}\n return {expression}; }})()")
 
 
-def _print(browser: Chromium, rules: str) -> list[Painted]:
+def _print(browser: Chromium, rules: str, size_px: tuple[float, float]) -> list[Painted]:
+    """What is painted under these rules. Chromium stretches a drawing to whole pixels, which is undone."""
     _ask(browser, f"sheet({rules!r})")
-    return [thing for thing in painted(browser.pdf()) if thing.alpha]
+    stretch = tuple(side / max(floor(side + 0.5), 1.0) for side in size_px)
+    return [thing for thing in painted(browser.pdf(), (stretch[0], stretch[1])) if thing.alpha]
 
 
-def _lines(browser: Chromium, solid: list[Painted], is_dashed: bool) -> list[FloatArray]:
+def _lines(browser: Chromium, solid: list[Painted], is_dashed: bool, size_px: tuple[float, float]) -> list[FloatArray]:
     """The lines of a print, with the gaps of dashes: where they are, a stroke is printed as a fill."""
     if not is_dashed:
         return [line for thing in solid for line in thing.visible()]
-    gapped = [thing for thing in _print(browser, _WITHOUT_TEXT + _BUTT) if thing.kind in _DRAWN]
+    gapped = [thing for thing in _print(browser, _WITHOUT_TEXT + _BUTT, size_px) if thing.kind in _DRAWN]
     lines: list[FloatArray] = []
     fills = [thing for thing in gapped if thing.kind == "fill"]
     known = {_key(thing) for thing in solid if thing.kind == "fill"}
@@ -149,7 +152,9 @@ def _cut(browser: Chromium, lines: list[FloatArray], found: Reference, scale: fl
     _ask(browser, f"sheet({_ONLY_TEXT_HIDDEN!r})")
     _ask(browser, "hideUncut()")
     seen = _alpha(browser.screenshot(scale))
-    cut = {_line_key(line) for thing in _print(browser, _WITHOUT_TEXT + _SOLID) for line in thing.visible()}
+    cut = {
+        _line_key(line) for thing in _print(browser, _WITHOUT_TEXT + _SOLID, found.size_px) for line in thing.visible()
+    }
     for line in lines:
         parts = _seen(line, seen, scale) if _line_key(line) in cut else []
         for part in parts:
@@ -172,9 +177,13 @@ def _expand_patterns(browser: Chromium, found: Reference, scale: float) -> None:
 
 
 def _differing(one: bytes, other: bytes) -> float:
-    """The share of pixels that differ much."""
+    """The share of the pixels where something is seen that differ much."""
     before, after = (np.asarray(Image.open(io.BytesIO(png)).convert("RGBA"), float) for png in (one, other))
-    return float((np.abs(before - after).max(axis=2) > _MUCH).mean()) if before.shape == after.shape else 1.0
+    if before.shape != after.shape:
+        return 1.0
+    seen = (before[:, :, 3] > _MUCH) | (after[:, :, 3] > _MUCH)
+    differing = np.abs(before - after).max(axis=2) > _MUCH
+    return float(differing.sum() / max(seen.sum(), 1))
 
 
 def _alpha(png: bytes) -> FloatArray:

@@ -18,7 +18,7 @@ _LOOSE_WIDTH = 0.2
 def compare_text(boxes: Sequence[FloatArray], ink: Sequence[FloatArray], page_mm: tuple[float, float]) -> str:
     """ "agree", "less" (text without ink), "more" (ink without text), "moved" (both, or another size), or "" where
     there is neither. boxes: corners (n, 2) of what is written; ink: our lines of text, all in mm."""
-    areas = [area for area in (shapely.Polygon(box) if len(box) > 3 else shapely.LineString(box) for box in boxes)]
+    areas = [shapely.Polygon(box) if len(box) > 3 else shapely.LineString(box) for box in boxes]
     areas = [area.buffer(1e-6) for area in areas if area.length > 0.0]
     lines = [shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0]) for line in ink if len(line)]
     if not areas:
@@ -28,7 +28,9 @@ def compare_text(boxes: Sequence[FloatArray], ink: Sequence[FloatArray], page_mm
     words = shapely.get_parts(shapely.unary_union([area.buffer(0.3 * _side(area)) for area in areas]))
     drawn = shapely.union_all(lines)
     is_less, is_more, is_off = False, False, False
-    allowed = shapely.unary_union([area.buffer(_LOOSE * _side(area) + _LOOSE_WIDTH * 0.5 * area.length / 4) for area in areas])
+    allowed = shapely.unary_union(
+        [area.buffer(_LOOSE * _side(area) + _LOOSE_WIDTH * 0.5 * area.length / 4) for area in areas]
+    )
     outside = drawn.difference(allowed)
     is_more = outside.length > 0.1 * drawn.length
     for word in words:
