@@ -16,7 +16,7 @@ from xml.parsers import expat
 
 from planner.drawing.arcs import ellipse_cubics
 from planner.drawing.path_data import command, commands, has_foreign_characters, has_unusable_numbers
-from planner.drawing.source import SVG_NAMESPACE, Survey, href_of, local_name, parse
+from planner.drawing.survey import SVG_NAMESPACE, Survey, href_of, local_name, parse
 from planner.errors import DrawingError
 
 PATH_LIMIT_BYTES = 64 << 20

@@ -11,7 +11,8 @@ from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.normalised import LARGEST_COORDINATE, read_normalised
 from planner.drawing.rewrite import rewrite
-from planner.drawing.source import DrawingSource, Survey, read_source, survey
+from planner.drawing.source import DrawingSource, read_source
+from planner.drawing.survey import Survey, survey
 from planner.drawing.usvg import NormalisationFailed, normalise
 from planner.errors import DrawingError
 
