@@ -20,3 +20,9 @@ def rotation(angle_deg: float) -> FloatArray:
     else:
         c, s = float(np.cos(np.radians(angle_deg))), float(np.sin(np.radians(angle_deg)))
     return np.array([[c, -s, 0.0], [s, c, 0.0]])
+
+
+def inverse(affine: FloatArray) -> FloatArray:
+    """The map that undoes `affine`. Errors: numpy.linalg.LinAlgError where it squeezes the plane to a line."""
+    back = np.linalg.inv(affine[:, :2])
+    return np.column_stack((back, -back @ affine[:, 2]))

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from planner.arrays import FloatArray
+from planner.drawing.cubics import at, chord_counts, chord_ends
 from planner.drawing.drawing import Outline
 from planner.errors import PlanError
 
@@ -15,29 +16,22 @@ POINT_LIMIT = 5_000_000
 
 def flatten_all(outlines: Sequence[Outline], user_to_arm: FloatArray, tolerance_mm: float) -> list[FloatArray]:
     """Outlines as polylines (n, 2) in the frame that `user_to_arm` (2, 3) leads to; a tap gives (1, 2). Curve and
-    polyline are nowhere further apart than `tolerance_mm`.
-
-    A cubic with second differences D splits at equal parameters into sqrt(6 |D| / (8 tolerance)) chords, since its
-    second derivative is at most 6 |D| and a chord over dt misses it by at most dt^2 / 8 of that. Errors: PlanError
-    where that comes to more points than the limit.
+    polyline are nowhere further apart than `tolerance_mm`. Errors: PlanError where that comes to more points than the
+    limit.
     """
     if not outlines:
         return []
     control = _transformed(outlines, user_to_arm)
-    bend = np.linalg.norm(np.diff(control, n=2, axis=1), axis=2).max(axis=1)
-    # Rounding must not bend a straight line.
-    bend[bend < 1e-12 * np.abs(control).max(axis=(1, 2))] = 0.0
-    n_chords = np.maximum(1.0, np.ceil(np.sqrt(0.75 * bend / tolerance_mm)))
-    if not n_chords.sum() <= POINT_LIMIT:
+    needed = chord_counts(control, tolerance_mm)
+    if not needed.sum() <= POINT_LIMIT:
         raise PlanError(
             f"at this size and tolerance the drawing comes to more than {POINT_LIMIT} points; make it"
             " smaller (--fit), or the --tolerance larger"
         )
-    n_chords = n_chords.astype(np.int64)
-    curve = np.repeat(np.arange(len(control)), n_chords)
-    chord = np.arange(len(curve)) - np.repeat(np.cumsum(n_chords) - n_chords, n_chords) + 1
-    ends = _at(control[curve], (chord / n_chords[curve])[:, np.newaxis])
-    is_last = chord == n_chords[curve]
+    n_chords = needed.astype(np.int64)
+    curve, t = chord_ends(n_chords)
+    ends = at(control[curve], t[:, np.newaxis])
+    is_last = t == 1.0
     ends[is_last] = control[curve[is_last], 3]
 
     n_curves = np.array([len(outline.beziers) for outline in outlines])
@@ -66,7 +60,7 @@ def extent(outlines: Sequence[Outline], affine: FloatArray) -> tuple[FloatArray,
     q = -(half_b + np.copysign(root, half_b))
     with np.errstate(divide="ignore", invalid="ignore"):
         turns = [np.nan_to_num(np.clip(t, 0.0, 1.0)) for t in (q / a, d0 / q)]
-    reached = np.stack([control[:, 0], control[:, 3], *(_at(control, t) for t in turns)])
+    reached = np.stack([control[:, 0], control[:, 3], *(at(control, t) for t in turns)])
     return reached.min(axis=(0, 1)), reached.max(axis=(0, 1))
 
 
@@ -75,15 +69,3 @@ def _transformed(outlines: Sequence[Outline], affine: FloatArray) -> FloatArray:
     control = np.concatenate([outline.beziers for outline in outlines])
     moved: FloatArray = control @ affine[:, :2].T + affine[:, 2]
     return moved
-
-
-def _at(control: FloatArray, t: FloatArray) -> FloatArray:
-    """Points (n, 2) of cubics (n, 4, 2) at parameters (n, 1), or (n, 2) for each coordinate its own."""
-    s = 1.0 - t
-    point: FloatArray = (
-        s * s * s * control[:, 0]
-        + 3.0 * s * s * t * control[:, 1]
-        + 3.0 * s * t * t * control[:, 2]
-        + t * t * t * control[:, 3]
-    )
-    return point

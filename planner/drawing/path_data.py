@@ -1,15 +1,20 @@
-"""Path data with arcs rewritten to the same path in absolute M, L, C, Q and Z."""
+"""Path data to subpaths, by the grammar of SVG 2, section 9.3: what stands before an error is drawn."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from array import array
+from dataclasses import dataclass, field
 
-from planner.drawing.arcs import arc_to_cubics
+import numpy as np
 
-_NUMBER = r"[\s,]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
-_FLAG = r"[\s,]*([01])"
-_COMMAND = re.compile(r"[\s,]*([MmLlHhVvCcSsQqTtAaZz])")
+from planner.arrays import BoolArray, FloatArray
+from planner.drawing.arcs import Cubic, arc_to_cubics
+from planner.drawing.subpath import Subpath
+
+_NUMBER = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*,?\s*"
+_FLAG = r"([01])\s*,?\s*"
+_COMMAND = re.compile(r"\s*([MmLlHhVvCcSsQqTtAaZz])\s*")
 _FOREIGN = re.compile(r"[^MmLlHhVvCcSsQqTtAaZz0-9eE+\-.,\s]")
 # An integer part of ten digits or more, or a decimal exponent of nine or more.
 _HUGE = re.compile(r"(?<![\d.])0*[1-9]\d{9}|[eE]\+?0*(?:9|[1-9]\d)")
@@ -17,7 +22,6 @@ _ARGUMENTS = {
     letter: re.compile(arguments)
     for letter, arguments in {
         "M": 2 * _NUMBER,
-        "L": 2 * _NUMBER,
         "H": _NUMBER,
         "V": _NUMBER,
         "C": 6 * _NUMBER,
@@ -25,9 +29,12 @@ _ARGUMENTS = {
         "Q": 4 * _NUMBER,
         "T": 2 * _NUMBER,
         "A": 3 * _NUMBER + 2 * _FLAG + 2 * _NUMBER,
-        "Z": "",
     }.items()
 }
+# A line may repeat its letter: where there are millions of commands, most are these.
+_LINES = {letter: re.compile(rf"(?:{letter}\s*)?" + 2 * _NUMBER) for letter in "Ll"}
+_ROUNDING = 1e-13
+Handle = tuple[float, float]
 
 
 def has_unusable_numbers(data: str) -> bool:
@@ -40,91 +47,224 @@ def has_foreign_characters(data: str) -> bool:
     return _FOREIGN.search(data) is not None
 
 
-def commands(data: str) -> Iterator[str]:
-    """The same path in absolute M, L, C, Q and Z, bit by bit, as arcs may multiply what there is; data without arcs as
-    it stands. After an error in the data, what stands before it is kept (SVG 1.1, section F.2)."""
-    if "A" not in data and "a" not in data:
-        return iter((data,))
-    return _Rewriter(data).commands()
+def parse_path(data: str) -> list[Subpath]:
+    """The subpaths of path data, empty where it begins with an error.
+
+    Every segment is a curve, those of zero length too; a subpath that `Z` closes ends with the closing one. An `M` with
+    nothing after it is one curve of four equal points whose end is no vertex: it has a place and is not drawn.
+    """
+    return _Reader(data).subpaths()
 
 
-def command(letter: str, values: Iterable[float]) -> str:
-    """One path command with every digit of its numbers."""
-    return letter + " ".join(map(repr, values))
+def parse_points(text: str) -> FloatArray:
+    """The points (n, 2) of `points`; half a point, and what follows an error, are left out."""
+    at, flat = len(text) - len(text.lstrip()), array("d")
+    while match := _ARGUMENTS["M"].match(text, at):
+        flat.extend((float(match[1]), float(match[2])))
+        at = match.end()
+    return np.array(flat).reshape(-1, 2)
 
 
-class _Rewriter:
+@dataclass(slots=True)
+class Curves:
+    """Cubics as they are collected: eight numbers each, with straight lines by their ends alone; where subpaths begin
+    and which of them are closed."""
+
+    flat: array[float] = field(default_factory=lambda: array("d"))
+    is_line: bytearray = field(default_factory=bytearray)
+    is_vertex: bytearray = field(default_factory=bytearray)
+    starts: list[int] = field(default_factory=list)
+    is_closed: list[bool] = field(default_factory=list)
+
+    def begin(self) -> None:
+        """A new subpath, open so far."""
+        self.starts.append(len(self.is_line))
+        self.is_closed.append(False)
+
+    def line(self, x0: float, y0: float, x1: float, y1: float, is_vertex: bool = True) -> None:
+        self.flat.extend((x0, y0, x0, y0, x1, y1, x1, y1))
+        self.is_line.append(True)
+        self.is_vertex.append(is_vertex)
+
+    def cubic(self, x0: float, y0: float, rest: tuple[float, ...], is_vertex: bool = True) -> None:
+        self.flat.extend((x0, y0, *rest))
+        self.is_line.append(False)
+        self.is_vertex.append(is_vertex)
+
+    def cubics(self, x0: float, y0: float, curves: list[Cubic], end: tuple[float, float]) -> None:
+        """Consecutive cubics, of which the last one ends exactly at `end`, and alone in a vertex."""
+        for curve in curves[:-1]:
+            self.cubic(x0, y0, curve, is_vertex=False)
+            x0, y0 = curve[4:]
+        self.cubic(x0, y0, (*curves[-1][:4], *end))
+
+    def subpaths(self) -> list[Subpath]:
+        """All of them, as views of one array."""
+        if not self.starts:
+            return []
+        curves: FloatArray = np.frombuffer(self.flat, dtype=np.float64).reshape(-1, 4, 2)
+        lines: BoolArray = np.frombuffer(self.is_line, dtype=np.bool_)
+        third = (curves[:, 3] - curves[:, 0]) / 3.0
+        third[~lines] = 0.0
+        curves[:, 1] += third
+        curves[:, 2] -= third
+        curves.setflags(write=False)
+        vertices: BoolArray = np.frombuffer(bytes(self.is_vertex), dtype=np.bool_)
+        ends = [*self.starts[1:], len(curves)]
+        return [
+            Subpath(curves[start:end], is_closed, vertices[start:end])
+            for start, end, is_closed in zip(self.starts, ends, self.is_closed, strict=True)
+        ]
+
+
+class _Reader:
+    """Where the pen is (x, y), where its subpath began, and the last handle of a curve, for S and T."""
+
     def __init__(self, data: str) -> None:
         self._data = data
-        self._at = 0
+        self._curves = Curves()
         self._x = self._y = self._start_x = self._start_y = 0.0
-        # The last control point, for S after C or S and for T after Q or T.
-        self._cubic_handle: tuple[float, float] | None = None
-        self._quadratic_handle: tuple[float, float] | None = None
+        self._handle: Handle | None = None
+        self._handle_of = ""
+        self._is_lone = False  # whether a subpath has begun that has no curve so far
 
-    def commands(self) -> Iterator[str]:
-        letter, is_first = "", True
-        while True:
-            match = _COMMAND.match(self._data, self._at)
-            if match:
-                letter, self._at = match[1], match.end()
-                values = self._arguments(letter.upper())
-            elif letter and letter not in "Zz":
-                letter = {"M": "L", "m": "l"}.get(letter, letter)
-                values = self._arguments(letter.upper())
+    def subpaths(self) -> list[Subpath]:
+        at, letter = 0, ""
+        while match := _COMMAND.match(self._data, at):
+            if not letter and match[1] not in "Mm":
+                break
+            letter, at = match[1], match.end()
+            if letter in "Zz":
+                self._close()
+            elif letter in "Ll":
+                at = self._lines(at, letter)
             else:
-                break
-            if values is None or (is_first and letter not in "Mm"):
-                break
-            is_first = False
-            yield from self._segment(letter.upper(), letter.islower(), values)
+                at = self._segments(at, letter)
+                if letter in "Mm":
+                    at = self._lines(at, "L" if letter == "M" else "l")
+        self._end_lone_move()
+        return self._curves.subpaths()
 
-    def _arguments(self, letter: str) -> list[float] | None:
-        """The numbers of one segment; None where they end or are not numbers."""
-        match = _ARGUMENTS[letter].match(self._data, self._at)
-        if not match:
-            return None
-        self._at = match.end()
-        return [float(number) for number in match.groups()]
+    def _lines(self, at: int, letter: str) -> int:
+        """As many lines as there are from `at` on; where they end."""
+        match = _LINES[letter].match(self._data, at)
+        if match is None:
+            return at
+        self._begin()
+        data, pattern = self._data, _LINES[letter]
+        flat, is_relative, n_before = self._curves.flat, letter == "l", len(self._curves.flat)
+        x, y = self._x, self._y
+        while match:
+            before_x, before_y = x, y
+            x, y = float(match[1]), float(match[2])
+            if is_relative:
+                x += before_x
+                y += before_y
+            flat.extend((before_x, before_y, before_x, before_y, x, y, x, y))
+            at = match.end()
+            match = pattern.match(data, at)
+        n_lines = (len(flat) - n_before) // 8
+        self._curves.is_line.extend(b"\1" * n_lines)
+        self._curves.is_vertex.extend(b"\1" * n_lines)
+        self._x, self._y, self._handle_of = x, y, ""
+        return at
 
-    def _segment(self, letter: str, relative: bool, values: list[float]) -> Iterator[str]:
-        if letter == "Z":
-            yield "Z"
-            self._x, self._y = self._start_x, self._start_y
-            self._cubic_handle = self._quadratic_handle = None
+    def _segments(self, at: int, letter: str) -> int:
+        """As many segments of a kind as there are from `at` on, of `M` one; where they end."""
+        kind, is_relative = letter.upper(), letter.islower()
+        pattern = _ARGUMENTS[kind]
+        while match := pattern.match(self._data, at):
+            at = match.end()
+            values = [float(number) for number in match.groups()]
+            if is_relative:
+                self._make_absolute(kind, values)
+            if kind == "M":
+                self._move(*values)
+                break
+            self._begin()
+            self._draw(kind, values)
+        return at
+
+    def _make_absolute(self, kind: str, values: list[float]) -> None:
+        if kind == "V":
+            values[0] += self._y
             return
-        if letter in "HV":
-            letter, values = "L", self._line_end(letter, relative, values[0])
-        elif relative and letter == "A":
-            values = [*values[:5], values[5] + self._x, values[6] + self._y]
-        elif relative:
-            values = [value + (self._y if index % 2 else self._x) for index, value in enumerate(values)]
-        cubic_handle = quadratic_handle = None
-        if letter == "S":
-            letter, values = "C", [*self._reflected(self._cubic_handle), *values]
-        elif letter == "T":
-            letter, values = "Q", [*self._reflected(self._quadratic_handle), *values]
-        if letter == "A":
-            rx, ry, rotation, large, sweep, x, y = values
-            for cubic in arc_to_cubics(self._x, self._y, rx, ry, rotation, large > 0.5, sweep > 0.5, x, y):
-                yield command("C", cubic)
+        for index in range(5 if kind == "A" else 0, len(values), 2):
+            values[index] += self._x
+            if index + 1 < len(values):
+                values[index + 1] += self._y
+
+    def _move(self, x: float, y: float) -> None:
+        self._end_lone_move()
+        self._x, self._y = self._start_x, self._start_y = x, y
+        self._handle_of = ""
+        self._curves.begin()
+        self._is_lone = True
+
+    def _end_lone_move(self) -> None:
+        if self._is_lone:
+            self._curves.line(self._x, self._y, self._x, self._y, is_vertex=False)
+            self._is_lone = False
+
+    def _begin(self) -> None:
+        """A segment follows: after `Z` it begins a subpath of its own, where the last one began."""
+        if self._curves.is_closed[-1]:
+            self._curves.begin()
+        self._is_lone = False
+
+    def _close(self) -> None:
+        self._begin()
+        reach = abs(self._start_x) + abs(self._start_y) + abs(self._x) + abs(self._y)
+        if self._curves.starts[-1] < len(self._curves.is_line) and (
+            abs(self._x - self._start_x) + abs(self._y - self._start_y) <= _ROUNDING * reach
+        ):
+            # What comes back to its start by sums of relative steps is there but for rounding.
+            self._curves.flat[-2:] = array("d", (self._start_x, self._start_y))
+            self._x, self._y = self._start_x, self._start_y
+        self._curves.line(self._x, self._y, self._start_x, self._start_y)
+        self._curves.is_closed[-1] = True
+        self._x, self._y, self._handle_of = self._start_x, self._start_y, ""
+
+    def _draw(self, kind: str, values: list[float]) -> None:
+        x0, y0 = self._x, self._y
+        if kind == "H":
+            self._straight(values[0], y0)
+        elif kind == "V":
+            self._straight(x0, values[0])
+        elif kind == "C":
+            self._cubic(*values)
+        elif kind == "S":
+            self._cubic(*self._reflected("C"), *values)
+        elif kind == "Q":
+            self._quadratic(*values)
+        elif kind == "T":
+            self._quadratic(*self._reflected("Q"), *values)
         else:
-            yield command(letter, values)
-            if letter == "C":
-                cubic_handle = (values[2], values[3])
-            elif letter == "Q":
-                quadratic_handle = (values[0], values[1])
-        self._x, self._y = values[-2], values[-1]
-        self._cubic_handle, self._quadratic_handle = cubic_handle, quadratic_handle
-        if letter == "M":
-            self._start_x, self._start_y = self._x, self._y
+            self._arc(*values)
 
-    def _line_end(self, letter: str, relative: bool, value: float) -> list[float]:
-        if letter == "H":
-            return [value + self._x if relative else value, self._y]
-        return [self._x, value + self._y if relative else value]
+    def _straight(self, x: float, y: float) -> None:
+        self._curves.line(self._x, self._y, x, y)
+        self._x, self._y, self._handle_of = x, y, ""
 
-    def _reflected(self, handle: tuple[float, float] | None) -> tuple[float, float]:
-        if handle is None:
+    def _cubic(self, x1: float, y1: float, x2: float, y2: float, x: float, y: float) -> None:
+        self._curves.cubic(self._x, self._y, (x1, y1, x2, y2, x, y))
+        self._x, self._y, self._handle, self._handle_of = x, y, (x2, y2), "C"
+
+    def _quadratic(self, x1: float, y1: float, x: float, y: float) -> None:
+        x0, y0 = self._x, self._y
+        first = (x0 + (x1 - x0) / 1.5, y0 + (y1 - y0) / 1.5)
+        second = (x + (x1 - x) / 1.5, y + (y1 - y) / 1.5)
+        self._curves.cubic(x0, y0, (*first, *second, x, y))
+        self._x, self._y, self._handle, self._handle_of = x, y, (x1, y1), "Q"
+
+    def _arc(self, rx: float, ry: float, rotation: float, large: float, sweep: float, x: float, y: float) -> None:
+        cubics = arc_to_cubics(self._x, self._y, rx, ry, rotation, large > 0.5, sweep > 0.5, x, y)
+        if not cubics:
+            return self._straight(x, y)
+        self._curves.cubics(self._x, self._y, cubics, (x, y))
+        self._x, self._y, self._handle_of = x, y, ""
+
+    def _reflected(self, kind: str) -> Handle:
+        if self._handle_of != kind or self._handle is None:
             return (self._x, self._y)
-        return (2.0 * self._x - handle[0], 2.0 * self._y - handle[1])
+        return (2.0 * self._x - self._handle[0], 2.0 * self._y - self._handle[1])

@@ -1,0 +1,89 @@
+"""Arc length along cubics, and the parameter at a length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.arrays import FloatArray, IntArray
+from planner.drawing.cubics import velocity
+
+_ROUNDS, _STEPS = 24, 12
+_PRECISION = 1e-9
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ArcLength:
+    """Lengths along a row of cubics that follow each other.
+
+    control: (n, 4, 2). curve, start: of each stretch (m,), in order, the cubic that it is of and the parameter where it
+    begins; a stretch is so short that eight Gauss-Legendre nodes give its length to a billionth of that of its curve.
+    begins: (m + 1,) the length up to each stretch, and of all.
+    """
+
+    control: FloatArray
+    curve: IntArray
+    start: FloatArray
+    begins: FloatArray
+
+    @classmethod
+    def of(cls, control: FloatArray) -> ArcLength:
+        """Stretches are halved until halves and whole agree, which near a cusp takes many."""
+        curve = np.arange(len(control))
+        start, end = np.zeros(len(control)), np.ones(len(control))
+        bound = _PRECISION * np.hypot(*np.moveaxis(np.diff(control, axis=1), 2, 0)).sum(axis=1)
+        done: list[tuple[IntArray, FloatArray, FloatArray]] = []
+        whole = _length(control[curve], start, end)
+        for round_ in range(_ROUNDS):
+            middle = 0.5 * (start + end)
+            left, right = _length(control[curve], start, middle), _length(control[curve], middle, end)
+            is_fine = (np.abs(left + right - whole) <= bound[curve]) | (round_ == _ROUNDS - 1)
+            done.append((curve[is_fine], start[is_fine], (left + right)[is_fine]))
+            rough = ~is_fine
+            curve = np.repeat(curve[rough], 2)
+            whole = np.column_stack((left[rough], right[rough])).ravel()
+            start, end = (
+                np.column_stack((start[rough], middle[rough])).ravel(),
+                np.column_stack((middle[rough], end[rough])).ravel(),
+            )
+            if not len(curve):
+                break
+        curves, starts, lengths = (np.concatenate(column) for column in zip(*done, strict=True))
+        order = np.lexsort((starts, curves))
+        begins = np.concatenate(([0.0], np.cumsum(lengths[order])))
+        return cls(control, curves[order], starts[order], begins)
+
+    @property
+    def total(self) -> float:
+        return float(self.begins[-1])
+
+    def places(self, lengths: FloatArray) -> tuple[IntArray, FloatArray]:
+        """The curve and the parameter at each of the lengths (n,), by Newton's method within the stretch."""
+        stretch = np.clip(np.searchsorted(self.begins, lengths, side="right") - 1, 0, len(self.curve) - 1)
+        curve, start = self.curve[stretch], self.start[stretch]
+        end = np.append(self.start[1:], 1.0)[stretch]
+        end = np.where(end > start, end, 1.0)
+        wanted = lengths - self.begins[stretch]
+        size = self.begins[stretch + 1] - self.begins[stretch]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = start + (end - start) * np.nan_to_num(np.clip(wanted / size, 0.0, 1.0))
+        control = self.control[curve]
+        for _ in range(_STEPS):
+            speed = np.hypot(*velocity(control, t[:, np.newaxis]).T)
+            excess = _length(control, start, t) - wanted
+            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+                t = np.clip(t - np.nan_to_num(excess / speed, posinf=0.0, neginf=0.0), start, end)
+        return curve, t
+
+
+def _length(control: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """The lengths (n,) of cubics between parameters (n,)."""
+    half = 0.5 * (end - start)
+    length = np.zeros(len(control))
+    for node, weight in zip(_NODES, _WEIGHTS, strict=True):
+        t = start + half * (1.0 + node)
+        length += weight * np.hypot(*velocity(control, t[:, np.newaxis]).T)
+    result: FloatArray = half * length
+    return result

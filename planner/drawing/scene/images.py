@@ -1,0 +1,114 @@
+"""Pictures: an SVG in a picture is drawn as the part of the drawing that it is."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from urllib.parse import unquote_to_bytes
+
+from planner.affine import compose
+from planner.drawing.scene.conditions import is_met
+from planner.drawing.scene.place import NESTING_LIMIT, Leaf, Place, Window
+from planner.drawing.scene.references import href
+from planner.drawing.scene.page import FALLBACK, OwnSize, own_size, size_for_percentages
+from planner.drawing.scene.viewport import fitted
+from planner.drawing.scene.walk import Tree, entered, hides_overflow, in_viewport, leaves
+from planner.drawing.source import SvgInMemory, read_source
+from planner.drawing.style.style import Styles
+from planner.drawing.transforms import Box, translation
+from planner.drawing.xml_tree import Document, read_tree
+from planner.errors import DrawingError
+
+_UNKNOWN = (300.0, 150.0)
+"""The size of a picture that does not say how large it is (CSS Images 3, section 5)."""
+_SVG_TYPES = ("image/svg+xml", "text/xml", "application/xml")
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Picture:
+    """kind: what it is, as it is counted where it is not drawn. box: where it is, None where that is not known.
+    tree, found: of an SVG, what is shown of it."""
+
+    kind: str
+    box: Box | None
+    tree: Tree | None = None
+    found: Iterator[Leaf] | None = None
+
+
+def embedded_svg(reference: str, source: str) -> Document | None:
+    """The SVG in a `data:` reference; None where it holds something else, or none that can be read."""
+    head, comma, body = reference.partition(",")
+    kind, *parameters = head.removeprefix("data:").split(";")
+    if not comma or kind.strip().lower() not in (*_SVG_TYPES, ""):
+        return None
+    try:
+        data = unquote_to_bytes(body)
+        if "base64" in (parameter.strip().lower() for parameter in parameters):
+            data = base64.b64decode(b"".join(data.split()) + b"==")
+        return read_tree(read_source(SvgInMemory(source, data)), source)
+    except (binascii.Error, ValueError, DrawingError):
+        return None
+
+
+def picture_of(tree: Tree, leaf: Leaf) -> Picture | None:
+    """What an `image` shows; None where that is nothing: without a reference, or of no size."""
+    reference, style, place = href(leaf.element), leaf.style, leaf.place
+    width, height = style.length("width", "x"), style.length("height", "y")
+    if not reference or width == 0.0 or height == 0.0:
+        return None
+    x, y = style.length("x", "x") or 0.0, style.length("y", "y") or 0.0
+    is_embedded = reference[:5].lower() == "data:"
+    document = embedded_svg(reference, tree.document.source) if is_embedded else None
+    if document is None:
+        box = (x, y, width, height) if width is not None and height is not None else None
+        return Picture("image" if is_embedded else "external reference", box)
+    if place.nesting >= NESTING_LIMIT:
+        return Picture("references nested too deeply", None)
+    tree.work.skipped.update(document.skipped)
+    styles = Styles(document)
+    root = document.root
+    size = own_size(root, styles.of(root, styles.root(FALLBACK), size_for_percentages(root)))
+    box_size = _box_size(width, height, size)
+    natural = size.within(box_size)
+    if min(*box_size, *natural) <= 0.0:
+        return None
+    aspect = leaf.element.attributes.get("preserveAspectRatio")
+    to_user = compose(place.to_user, compose(translation(x, y), fitted((0.0, 0.0, *natural), box_size, aspect)))
+    clips = place.clips
+    if hides_overflow(style):
+        clips = (*clips, Window((x, y, *box_size), place.to_user))
+    around = Place(
+        to_user,
+        styles.root(natural),
+        natural,
+        opacity=place.opacity,
+        clips=clips,
+        layer=place.layer,
+        has_layer=True,
+        nesting=place.nesting + 1,
+    )
+    inner = replace(tree, document=document, styles=styles, root=around, document_styles={})
+    return Picture("image", (x, y, *box_size), inner, _shown(inner, natural))
+
+
+def _shown(tree: Tree, size: tuple[float, float]) -> Iterator[Leaf]:
+    """What the outermost `svg` of a picture of some size shows."""
+    root, around = tree.document.root, tree.root
+    style = tree.styles.of(root, around.style, around.viewport)
+    if style["display"] != "none" and is_met(root):
+        inner = in_viewport(root, style, entered(tree, root, style, around), 0.0, 0.0, *size)
+        if inner is not None:
+            yield from leaves(tree, root.children, inner)
+
+
+def _box_size(width: float | None, height: float | None, size: OwnSize) -> tuple[float, float]:
+    """What is not said of the size of an `image` follows from its picture."""
+    if width is not None and height is not None:
+        return width, height
+    natural = size.within(_UNKNOWN)
+    if width is None and height is None:
+        return natural
+    ratio = natural[0] / natural[1] if natural[1] else 0.0
+    return (width, width / ratio if ratio else 0.0) if width is not None else ((height or 0.0) * ratio, height or 0.0)

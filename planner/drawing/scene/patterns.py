@@ -1,0 +1,99 @@
+"""How the tiles of a `pattern` lie."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.affine import compose, inverse
+from planner.arrays import FloatArray
+from planner.drawing.scene.boxes import moved_box
+from planner.drawing.scene.place import Place
+from planner.drawing.scene.references import chain, inherited_attribute
+from planner.drawing.scene.viewport import fitted, parse_view_box
+from planner.drawing.scene.walk import Tree, attribute_length
+from planner.drawing.style.style import Axis, Style
+from planner.drawing.transforms import IDENTITY, Box, local_transform, scaling, translation
+from planner.drawing.xml_tree import Element
+
+TILE_LIMIT = 10_000
+"""Tiles of one pattern on one shape: more of them are a grey to the eye."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Tiles:
+    """content: the element whose children a tile shows. tile: its box in the units of the pattern; to_user: from these
+    (2, 3). to_tile: (2, 3), from the units of the content to those of the pattern, in the tile that stands at the
+    box. viewport: what percentages in the content are of."""
+
+    content: Element
+    tile: Box
+    to_user: FloatArray
+    to_tile: FloatArray
+    viewport: tuple[float, float]
+
+    def over(self, box: Box) -> list[FloatArray] | None:
+        """The moves (2, 3), in user units, that bring the tile to where it covers a box in user units; None where they
+        are too many."""
+        x, y, width, height = moved_box(box, inverse(self.to_user))
+        left, top, step_x, step_y = self.tile
+        columns = range(math.floor((x - left) / step_x), math.ceil((x + width - left) / step_x))
+        rows = range(math.floor((y - top) / step_y), math.ceil((y + height - top) / step_y))
+        if len(columns) * len(rows) > TILE_LIMIT:
+            return None
+        linear = self.to_user[:, :2]
+        return [translation(*(linear @ (column * step_x, row * step_y)).tolist()) for row in rows for column in columns]
+
+
+def tiles_of(tree: Tree, pattern: Element, style: Style, place: Place, box: Box) -> Tiles | None:
+    """Those of an element with a style, a place, and a box around it. None for a pattern that shows nothing: without
+    children, or with tiles of no size."""
+    patterns = chain(tree.document, pattern, "pattern")
+    content = next((pattern for pattern in patterns if pattern.children), None)
+    if content is None:
+        return None
+
+    def attribute(name: str) -> str | None:
+        return inherited_attribute(patterns, name)
+
+    x, y, box_width, box_height = box
+    is_of_box = attribute("patternUnits") != "userSpaceOnUse"
+    if is_of_box and min(box_width, box_height) <= 0.0:
+        return None
+    axes: tuple[tuple[str, Axis, float], ...] = (
+        ("x", "x", box_width),
+        ("y", "y", box_height),
+        ("width", "x", box_width),
+        ("height", "y", box_height),
+    )
+    left, top, width, height = (
+        attribute_length(style, attribute(name), axis, whole if is_of_box else None) for name, axis, whole in axes
+    )
+    if is_of_box:
+        left, top = left + x, top + y
+    transform = _transform(tree, patterns, place, box)
+    to_user = compose(place.to_user, transform)
+    if width <= 0.0 or height <= 0.0 or not np.isfinite(to_user).all() or np.linalg.det(to_user[:, :2]) == 0.0:
+        return None
+    view_box = parse_view_box(attribute("viewBox"))
+    to_tile = translation(left, top)
+    viewport = place.viewport
+    if view_box is not None:
+        if min(view_box[2:]) == 0.0:
+            return None
+        to_tile = compose(to_tile, fitted(view_box, (width, height), attribute("preserveAspectRatio")))
+        viewport = view_box[2:]
+    elif attribute("patternContentUnits") == "objectBoundingBox":
+        to_tile = compose(to_tile, scaling(box_width, box_height))
+    return Tiles(content, (left, top, width, height), to_user, to_tile, viewport)
+
+
+def _transform(tree: Tree, patterns: list[Element], place: Place, box: Box) -> FloatArray:
+    """`patternTransform`, or what CSS says in its place."""
+    for pattern in patterns:
+        style = tree.style_of(pattern)
+        if "patternTransform" in pattern.attributes or style["transform"] != "none":
+            return local_transform(style, place.viewport, lambda: box)
+    return IDENTITY
