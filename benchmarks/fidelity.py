@@ -50,7 +50,8 @@ class Drawn:
 @dataclass(frozen=True, slots=True)
 class Judgement:
     """kind: "agree", "less", "more", "moved", "refused" (Chromium shows something), "unread" (only the planner does),
-    "page" (its size differs) or "unsaid" with what is neither lines nor counted. said: what the planner said it left out, or its error; "SILENT" where nothing."""
+    "page" (its size differs) or "unsaid" with what is neither lines nor counted. said: what the planner said it left
+    out, or its error; "SILENT" where nothing."""
 
     file: str
     folder: str
@@ -92,7 +93,7 @@ def judge(browser: Chromium, file: Path, pictures: Path | None) -> Judgement:
     text = (
         ""
         if shown.error or with_text.error
-        else compare_text([box * _MM_PER_PX for box in shown.text_boxes], _only_text(plain, with_text), page_mm)
+        else compare_text([box * _MM_PER_PX for box in shown.text_boxes], _only_text(plain, with_text))
     )
     kind, measured = verdict
     said = with_text.error or ", ".join(sorted(with_text.skipped)) or "SILENT"

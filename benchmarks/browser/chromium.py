@@ -37,7 +37,7 @@ _MOST_PIXELS = 4096.0
 
 def executable() -> str | None:
     """Where Chromium is, if it is."""
-    return shutil.which("chromium") or shutil.which("chromium-browser")
+    return next(filter(None, map(shutil.which, ("chromium", "google-chrome", "chromium-browser"))), None)
 
 
 class Chromium:

@@ -35,7 +35,7 @@ _WITHOUT_SHAPES = _PLAIN + f"{_SHAPES} {{ fill: none !important; stroke: none !i
 _ONLY_TEXT_HIDDEN = _UNFILTERED + f"{_TEXT} {{ fill: none !important; stroke: none !important; }}"
 _SOLID = f"*{_ABOVE_ALL} {{ stroke-dasharray: none !important; }}"
 _BUTT = f"*{_ABOVE_ALL} {{ stroke-linecap: butt !important; }}"
-_LONGEST_SIDE_PIXELS = 1600.0
+_LONGEST_SIDE_PIXELS = 1000.0
 _SEEN_WITHIN_PIXELS = 2
 _TOUCH = 0.03
 """Of the longer side of the page."""
@@ -61,7 +61,9 @@ class Reference:
     has_to_be_said: list[str] = field(default_factory=list)
 
 
-def reference(browser: Chromium, drawing: bytes, size_px: tuple[float, float]) -> Reference:
+def reference(
+    browser: Chromium, drawing: bytes, size_px: tuple[float, float] = (300.0, 150.0)
+) -> Reference:
     """What Chromium shows of an SVG. size_px: the page of a drawing that does not say how large it is."""
     browser.show(drawing, size_px)
     try:

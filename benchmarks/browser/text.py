@@ -15,7 +15,7 @@ _LOOSE_WIDTH = 0.2
 """Of the width of a piece of text, that being its sum."""
 
 
-def compare_text(boxes: Sequence[FloatArray], ink: Sequence[FloatArray], page_mm: tuple[float, float]) -> str:
+def compare_text(boxes: Sequence[FloatArray], ink: Sequence[FloatArray]) -> str:
     """ "agree", "less" (text without ink), "more" (ink without text), "moved" (both, or another size), or "" where
     there is neither. boxes: corners (n, 2) of what is written; ink: our lines of text, all in mm."""
     areas = [shapely.Polygon(box) if len(box) > 3 else shapely.LineString(box) for box in boxes]
