@@ -15,9 +15,15 @@ class Outline:
 
     beziers: (n_curves, 4, 2), user units; curve k ends exactly where curve k + 1 begins. A subpath of
     zero length is one curve with four equal points: a pen tap. A closed subpath ends where it began.
+    layer: the name of the layer that it is on, or "". colour: sRGB. width: of its stroke in user units, 0 where it is
+    the edge of a fill. gap: (n, 4, 2), of a dash, the curves to where the next dash of its line begins; else None.
     """
 
     beziers: FloatArray
+    layer: str = ""
+    colour: tuple[int, int, int] = (0, 0, 0)
+    width: float = 0.0
+    gap: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 
 from planner.arrays import FloatArray
 from planner.drawing.cubics import at, chord_counts, chord_ends
-from planner.drawing.drawing import Outline
 from planner.errors import PlanError
 
 POINT_LIMIT = 5_000_000
 
 
-def flatten_all(outlines: Sequence[Outline], user_to_arm: FloatArray, tolerance_mm: float) -> list[FloatArray]:
+class Curves(Protocol):
+    """Consecutive cubics."""
+
+    @property
+    def beziers(self) -> FloatArray:
+        """(n_curves, 4, 2)."""
+
+
+def flatten_all(outlines: Sequence[Curves], user_to_arm: FloatArray, tolerance_mm: float) -> list[FloatArray]:
     """Outlines as polylines (n, 2) in the frame that `user_to_arm` (2, 3) leads to; a tap gives (1, 2). Curve and
     polyline are nowhere further apart than `tolerance_mm`. Errors: PlanError where that comes to more points than the
     limit.
@@ -47,7 +55,7 @@ def flatten_all(outlines: Sequence[Outline], user_to_arm: FloatArray, tolerance_
     return np.split(points[is_new], kept_starts[1:])
 
 
-def extent(outlines: Sequence[Outline], affine: FloatArray) -> tuple[FloatArray, FloatArray]:
+def extent(outlines: Sequence[Curves], affine: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Lowest and highest x and y, (2,) each, that the curves truly reach after `affine` (2, 3).
 
     Beside their ends, curves turn where the derivative of a coordinate is zero. Needs at least one outline.
@@ -64,7 +72,7 @@ def extent(outlines: Sequence[Outline], affine: FloatArray) -> tuple[FloatArray,
     return reached.min(axis=(0, 1)), reached.max(axis=(0, 1))
 
 
-def _transformed(outlines: Sequence[Outline], affine: FloatArray) -> FloatArray:
+def _transformed(outlines: Sequence[Curves], affine: FloatArray) -> FloatArray:
     """All curves of all outlines, (n, 4, 2)."""
     control = np.concatenate([outline.beziers for outline in outlines])
     moved: FloatArray = control @ affine[:, :2].T + affine[:, 2]

@@ -7,7 +7,7 @@ import numpy as np
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.drawing.cubics import at
 
-_MOST_STEPS = 80
+_MOST_STEPS, _SAME = 80, 1e-15
 
 
 def crossings(
@@ -71,7 +71,7 @@ def _root(power: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
             newton = t - value / (power[1] + t * (2.0 * power[2] + 3.0 * t * power[3]))
         is_within = (newton >= low) & (newton <= high)
         following = np.where(is_within, newton, 0.5 * (low + high))
-        if np.all(np.abs(following - t) <= 1e-16):
+        if np.all(np.abs(following - t) <= _SAME):
             return following
         t = following
     return t

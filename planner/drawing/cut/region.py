@@ -23,10 +23,11 @@ _MOST_CHORDS = 4096
 _FEW_RINGS = 8
 
 
-def region(subpaths: Sequence[Subpath], is_even_odd: bool) -> BaseGeometry:
+def region(subpaths: Sequence[Subpath], is_even_odd: bool, tolerance: float = 0.0) -> BaseGeometry:
     """The area that a fill of `subpaths` covers, open ones closed: a polygon, several, or an empty one, always valid.
-    Curves become chords, which miss them by less than a millionth of the extent. Coordinates are finite."""
-    rings = _rings(subpaths)
+    Curves become chords, which miss them by less than a millionth of the extent, or than `tolerance` where that is
+    more. Coordinates are finite."""
+    rings = _rings(subpaths, tolerance)
     if not rings:
         return shapely.Polygon()
     is_plain = len(rings) == 1 or (is_even_odd and len(rings) <= _FEW_RINGS)
@@ -37,7 +38,7 @@ def region(subpaths: Sequence[Subpath], is_even_odd: bool) -> BaseGeometry:
     return _faces(rings, is_even_odd)
 
 
-def _rings(subpaths: Sequence[Subpath]) -> list[FloatArray]:
+def _rings(subpaths: Sequence[Subpath], tolerance: float) -> list[FloatArray]:
     """Closed polylines (n, 2), n at least 4, of the subpaths that have an area to them."""
     curved = [path.beziers for path in subpaths if len(path.beziers)]
     if not curved:
@@ -46,7 +47,7 @@ def _rings(subpaths: Sequence[Subpath]) -> list[FloatArray]:
     extent = float(np.ptp(control.reshape(-1, 2), axis=0).max())
     if extent == 0.0:
         return []
-    counts = np.minimum(chord_counts(control, FLATTENING * extent), _MOST_CHORDS).astype(np.int64)
+    counts = np.minimum(chord_counts(control, max(tolerance, FLATTENING * extent)), _MOST_CHORDS).astype(np.int64)
     curve, t = chord_ends(counts)
     ends = at(control[curve], t[:, np.newaxis])
     is_last = t == 1.0

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-
-from shapely.geometry.base import BaseGeometry
+from typing import TYPE_CHECKING
 
 from planner.arrays import FloatArray
 from planner.drawing.subpath import Subpath
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
 
 Colour = tuple[int, int, int]
 
