@@ -35,6 +35,8 @@ from planner.arrays import FloatArray
 _MM_PER_PX = 25.4 / 96.0
 _PICTURE_PIXELS = 600
 _NOT_SURE_SLACK = 3.0
+_WORDS = {"filter": {"filter"}, "image": {"image", "external reference"}}
+"""What has to be said, and the words of the planner that say it."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -97,7 +99,7 @@ def judge(browser: Chromium, file: Path, pictures: Path | None) -> Judgement:
     )
     kind, measured = verdict
     said = with_text.error or ", ".join(sorted(with_text.skipped)) or "SILENT"
-    unsaid = [kind for kind in shown.has_to_be_said if not any(kind in word for word in with_text.skipped)]
+    unsaid = [kind for kind in shown.has_to_be_said if not any(word in _WORDS[kind] for word in with_text.skipped)]
     if kind == "agree" and unsaid and not with_text.error:
         kind = "unsaid " + " and ".join(unsaid)
     figures = asdict(measured) if measured is not None else {"kind": kind}
@@ -116,13 +118,20 @@ def _verdict(shown: Reference, plain: Drawn, with_text: Drawn) -> tuple[str, Ver
         is_seen = bool(lines) or (bool(with_text.error) and bool(shown.text_boxes))
         return ("refused" if is_seen else "agree"), None
     page_mm = plain.page_mm
+    sure = [line * _MM_PER_PX for line in shown.sure]
+    if "background" in plain.skipped:
+        sure = [line for line in sure if not _is_background(line, page_mm)]
     shown_mm = tuple(side * _MM_PER_PX for side in shown.size_px)
     if max(abs(a - b) for a, b in zip(shown_mm, page_mm, strict=True)) > 0.005 * max(page_mm):
         return "page", None
-    measured = compare(
-        lines, [line * _MM_PER_PX for line in shown.sure], plain.lines, page_mm, _NOT_SURE_SLACK if shown.notes else 1.0
-    )
+    measured = compare(lines, sure, plain.lines, page_mm, _NOT_SURE_SLACK if shown.notes else 1.0)
     return measured.kind, measured
+
+
+def _is_background(line: FloatArray, page_mm: tuple[float, float]) -> bool:
+    """Whether a line runs around all that is on the page."""
+    slack = 0.02 * max(page_mm)
+    return bool((line.min(axis=0) <= slack).all() and (line.max(axis=0) >= np.array(page_mm) - slack).all())
 
 
 def _only_text(plain: Drawn, with_text: Drawn) -> list[FloatArray]:

@@ -147,9 +147,11 @@ function expand(element) {
     let turned = svg.createSVGMatrix();
     if (link) {
         const list = link.patternTransform.baseVal.consolidate();
-        if (list) turned = list.matrix;
         const css = styleOf(link).transform;
-        if (!list && css !== "none") turned = svg.createSVGTransformFromMatrix(new view.DOMMatrix(css)).matrix;
+        if (list) turned = list.matrix;
+        else if (css !== "none") turned = svg.createSVGTransformFromMatrix(new view.DOMMatrix(css)).matrix;
+        const [x, y] = styleOf(link).transformOrigin.split(" ").map(parseFloat);
+        turned = svg.createSVGMatrix().translate(x, y).multiply(turned).translate(-x, -y);
     }
     const style = styleOf(source);
     const kept = inherited.map((name) => `${name}: ${style.getPropertyValue(name)}`).join("; ");

@@ -15,6 +15,8 @@ from shapely.geometry.base import BaseGeometry
 from planner.arrays import FloatArray
 
 _PX_PER_POINT = 96.0 / 72.0
+_ON_THE_EDGE_PX = 0.02
+"""What lies on the edge of a clip is inside."""
 _CHORD = 1e-4
 """Of the longer side of the page."""
 
@@ -130,7 +132,7 @@ class _Reader:
             lines = self._polylines(segment, pdfium.FPDFClipPath_CountPathSegments(path, index), affine)
             key = b"".join(line.tobytes() for line in lines)
             if key not in self._clips:
-                self._clips[key] = _union(lines)
+                self._clips[key] = _union(lines).buffer(_ON_THE_EDGE_PX, join_style="mitre")
             clip = self._clips[key] if clip is None else clip.intersection(self._clips[key])
         return clip
 

@@ -29,7 +29,11 @@ _ABOVE_ALL = ":not(#a#b#c#d)"
 _SHAPES = f":is(path, rect, circle, ellipse, line, polyline, polygon):not(mask *){_ABOVE_ALL}"
 _TEXT = f":is(text, tspan, textPath):not(mask *){_ABOVE_ALL}"
 _UNFILTERED = f"*{_ABOVE_ALL} {{ filter: none !important; }}"
-_PLAIN = _UNFILTERED + f"*{_ABOVE_ALL} {{ mask: none !important; }}"
+_PLAIN = (
+    f":root{_ABOVE_ALL} {{ background: none !important; }}"
+    + _UNFILTERED
+    + f"*{_ABOVE_ALL} {{ mask: none !important; }}"
+)
 _WITHOUT_TEXT = _PLAIN + f"{_TEXT} {{ fill: none !important; stroke: none !important; }}"
 _WITHOUT_SHAPES = _PLAIN + f"{_SHAPES} {{ fill: none !important; stroke: none !important; }}"
 _ONLY_TEXT_HIDDEN = _UNFILTERED + f"{_TEXT} {{ fill: none !important; stroke: none !important; }}"
@@ -37,7 +41,7 @@ _SOLID = f"*{_ABOVE_ALL} {{ stroke-dasharray: none !important; }}"
 _BUTT = f"*{_ABOVE_ALL} {{ stroke-linecap: butt !important; }}"
 _LONGEST_SIDE_PIXELS = 1000.0
 _SEEN_WITHIN_PIXELS = 2
-_TOUCH = 0.03
+_TOUCH = 0.08
 """Of the longer side of the page."""
 _DRAWN = ("fill", "stroke")
 _MUCH = 96.0
@@ -61,9 +65,7 @@ class Reference:
     has_to_be_said: list[str] = field(default_factory=list)
 
 
-def reference(
-    browser: Chromium, drawing: bytes, size_px: tuple[float, float] = (300.0, 150.0)
-) -> Reference:
+def reference(browser: Chromium, drawing: bytes, size_px: tuple[float, float] = (300.0, 150.0)) -> Reference:
     """What Chromium shows of an SVG. size_px: the page of a drawing that does not say how large it is."""
     browser.show(drawing, size_px)
     try:
@@ -135,7 +137,9 @@ def _lines(browser: Chromium, solid: list[Painted], is_dashed: bool, size_px: tu
 
 
 def _key(thing: Painted) -> tuple[Any, ...]:
-    return (thing.kind, *(np.round(line, 2).tobytes() for line in thing.lines))
+    """The same for equal things, whatever points lie on one another for the sake of caps."""
+    apart = [line[np.append(True, np.any(np.diff(line, axis=0) != 0.0, axis=1))] for line in thing.lines]
+    return (thing.kind, *(np.round(line, 2).tobytes() for line in apart))
 
 
 def _boxed(thing: Painted) -> Painted:

@@ -1,6 +1,6 @@
 """References kept in files beside their drawings, so that tests need no browser.
 
-    python -m benchmarks.browser.stored tests/drawing/pages/*.svg    # paint them again
+python -m benchmarks.browser.stored tests/drawing/pages/*.svg    # paint them again
 """
 
 from __future__ import annotations
