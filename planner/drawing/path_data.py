@@ -12,7 +12,8 @@ from planner.arrays import BoolArray, FloatArray
 from planner.drawing.arcs import Cubic, arc_to_cubics
 from planner.drawing.subpath import Subpath
 
-_NUMBER = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*,?\s*"
+# Atomic: no digit of a number is ever given up for the number that is missing after it.
+_NUMBER = r"((?>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))\s*,?\s*"
 _FLAG = r"([01])\s*,?\s*"
 _COMMAND = re.compile(r"\s*([MmLlHhVvCcSsQqTtAaZz])\s*")
 _FOREIGN = re.compile(r"[^MmLlHhVvCcSsQqTtAaZz0-9eE+\-.,\s]")
@@ -213,7 +214,9 @@ class _Reader:
         self._is_lone = False
 
     def _close(self) -> None:
-        self._begin()
+        if self._curves.is_closed[-1]:
+            return
+        self._is_lone = False
         reach = abs(self._start_x) + abs(self._start_y) + abs(self._x) + abs(self._y)
         if self._curves.starts[-1] < len(self._curves.is_line) and (
             abs(self._x - self._start_x) + abs(self._y - self._start_y) <= _ROUNDING * reach
@@ -259,10 +262,11 @@ class _Reader:
 
     def _arc(self, rx: float, ry: float, rotation: float, large: float, sweep: float, x: float, y: float) -> None:
         cubics = arc_to_cubics(self._x, self._y, rx, ry, rotation, large > 0.5, sweep > 0.5, x, y)
-        if not cubics:
-            return self._straight(x, y)
-        self._curves.cubics(self._x, self._y, cubics, (x, y))
-        self._x, self._y, self._handle_of = x, y, ""
+        if cubics:
+            self._curves.cubics(self._x, self._y, cubics, (x, y))
+            self._x, self._y, self._handle_of = x, y, ""
+        else:
+            self._straight(x, y)
 
     def _reflected(self, kind: str) -> Handle:
         if self._handle_of != kind or self._handle is None:

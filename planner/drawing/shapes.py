@@ -9,7 +9,8 @@ import numpy as np
 
 from planner.drawing.arcs import ellipse_cubics
 from planner.drawing.path_data import Curves, parse_path, parse_points
-from planner.drawing.style.style import Axis, Style
+from planner.drawing.style.style import Style
+from planner.drawing.style.units import Axis
 from planner.drawing.subpath import Subpath, polyline
 from planner.drawing.xml_tree import Element
 

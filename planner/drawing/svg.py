@@ -15,6 +15,7 @@ from planner.drawing.xml_tree import Document, read_tree
 from planner.errors import DrawingError
 
 _STEPS = 4
+_AS_BROWSERS_DO = ReadingOptions()
 _ADVICE = {
     "text": "convert text to paths (in Inkscape: Path, Object to Path)",
     "foreignObject": "convert embedded pages to paths, or export the drawing as plain SVG",
@@ -29,7 +30,7 @@ def read_drawing(
     svg: DrawingSource,
     report: Callable[[int, int], None] = lambda done, total: None,
     *,
-    options: ReadingOptions = ReadingOptions(),
+    options: ReadingOptions = _AS_BROWSERS_DO,
 ) -> Drawing:
     """All visible outlines of an SVG, a file or in memory, gzipped or not, with the page they are on.
 

@@ -14,12 +14,13 @@ import numpy as np
 
 from planner.affine import compose, rotation
 from planner.arrays import FloatArray, frozen
-from planner.drawing.style.style import Axis, Style
+from planner.drawing.style.style import Style
+from planner.drawing.style.units import Axis
 
 Box = tuple[float, float, float, float]
 """x, y, width, height."""
 IDENTITY = frozen([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = r"(?>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
 _CALL = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
 _FUNCTION = re.compile(rf"\s*,?\s*([a-zA-Z0-9]+)\s*({_CALL})\s*")
 _ARGUMENT = re.compile(rf"\s*({_NUMBER}[a-zA-Z%]*|[a-z]+{_CALL})\s*,?\s*")

@@ -123,12 +123,12 @@ class _Scope:
         self._tags: dict[str, str] = {}
         self._keys: dict[str, str] = {}
 
-    def within(self, attributes: dict[str, str], svg: frozenset[str]) -> _Scope:
+    def within(self, attributes: dict[str, str]) -> _Scope:
         """That of an element with these attributes."""
         declared = {
             key[6:]: value.strip() for key, value in attributes.items() if key.startswith("xmlns:") or key == "xmlns"
         }
-        return _Scope({**self.namespaces, **declared}, svg) if declared else self
+        return _Scope({**self.namespaces, **declared}, self._svg) if declared else self
 
     def tag(self, name: str) -> str:
         """The local name, or "" where it is not of SVG. Errors: KeyError, the prefix."""
@@ -168,8 +168,7 @@ class _Builder:
         self._source = source
         self._n_elements = 0
         self._open: list[Element] = []
-        self._svg = frozenset({SVG_NAMESPACE})
-        self._scopes = [_Scope(_BUILT_IN, self._svg)]
+        self._scopes = [_Scope(_BUILT_IN, frozenset({SVG_NAMESPACE}))]
         self._texts: list[str] = []
         self._doctype = ""
         self._entities = Entities(self._refuse)
@@ -179,6 +178,7 @@ class _Builder:
         parser.EndDoctypeDeclHandler = self._end_doctype
         parser.EntityDeclHandler = self._entity
         parser.ExternalEntityRefHandler = self._external_entity
+        parser.SkippedEntityHandler = self._skipped_entity
         parser.ProcessingInstructionHandler = self._instruction
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
@@ -204,6 +204,12 @@ class _Builder:
         self.skipped["external reference"] += 1
         return 1
 
+    def _skipped_entity(self, _: str, is_parameter: bool) -> None:
+        if is_parameter:
+            self.skipped["external reference"] += 1
+        elif any(element.tag == "text" for element in self._open):  # browsers leave it out, and it shows nowhere else
+            self.skipped["entity that is declared elsewhere"] += 1
+
     def _instruction(self, target: str, _: str) -> None:
         if target == "xml-stylesheet":
             self.skipped["external reference"] += 1
@@ -212,7 +218,7 @@ class _Builder:
         line = self.parser.CurrentLineNumber
         if self.root is None:
             self._enter_root(name, given, line)
-        scope = self._scopes[-1].within(given, self._svg)
+        scope = self._scopes[-1].within(given)
         try:
             element = Element(scope.tag(name), scope.attributes(given), line)
         except KeyError as unknown:
@@ -241,7 +247,7 @@ class _Builder:
         key = f"xmlns:{prefix}" if prefix else "xmlns"
         namespace = given.get(key, "").strip()
         if local == "svg" and not prefix and not namespace:
-            self._svg = frozenset({SVG_NAMESPACE, ""})
+            self._scopes = [_Scope(_BUILT_IN, frozenset({SVG_NAMESPACE, ""}))]
         elif local == "svg" and prefix and key not in given:
             self._refuse_prefix(prefix, line)
         elif local == "svg" and namespace != SVG_NAMESPACE:

@@ -11,7 +11,8 @@ import numpy as np
 
 from planner.drawing.path_data import parse_path
 from planner.drawing.shapes import ellipse, rectangle
-from planner.drawing.style.style import Axis, Style
+from planner.drawing.style.style import Style
+from planner.drawing.style.units import Axis
 from planner.drawing.subpath import Subpath, polyline
 from planner.drawing.transforms import Box, translation
 
@@ -64,7 +65,7 @@ class _Reader:
         words = _WORD.findall(text)
         if name in ("circle", "ellipse"):
             at = words.index("at") if "at" in words else len(words)
-            return self._round(name, words[:at], words[at + 1 :])
+            return self._round(words[:at], words[at + 1 :], is_circle=name == "circle")
         split = words.index("round") if "round" in words else len(words)
         sides, radii = words[:split], words[split + 1 :]
         if name == "inset" and 1 <= len(sides) <= 4:
@@ -73,7 +74,8 @@ class _Reader:
             x1, y1 = self._width - self._length(right, "x"), self._height - self._length(bottom, "y")
             return self._rectangle(x0, y0, x1 - x0, y1 - y0, radii)
         if name == "xywh" and len(sides) == 4:
-            x, y, width, height = (self._length(word, "yx"[index % 2 == 0]) for index, word in enumerate(sides))
+            x, width = (self._length(word, "x") for word in sides[::2])
+            y, height = (self._length(word, "y") for word in sides[1::2])
             return self._rectangle(x, y, width, height, radii)
         if name == "rect" and len(sides) == 4:
             top, right, bottom, left = (
@@ -83,26 +85,22 @@ class _Reader:
             return self._rectangle(x, y, self._length(right, "x") - x, self._length(bottom, "y") - y, radii)
         return None
 
-    def _round(self, name: str, radii: list[str], center: list[str]) -> BasicShape:
+    def _round(self, radii: list[str], center: list[str], is_circle: bool) -> BasicShape:
         x, y = self._position(center)
-        to_sides = ((x, self._width - x), (y, self._height - y))
-        if name == "circle":
-            word = radii[0] if radii else "closest-side"
-            sides = [abs(side) for pair in to_sides for side in pair]
-            found = {"closest-side": min(sides), "farthest-side": max(sides)}
-            rx = ry = found[word] if word in found else self._length(word, "diagonal")
+        across, down = (abs(x), abs(self._width - x)), (abs(y), abs(self._height - y))
+        if is_circle:
+            rx = ry = self._radius(radii[0] if radii else "closest-side", "diagonal", (*across, *down))
         else:
-            words = radii if len(radii) == 2 else ["closest-side", "closest-side"]
-            axes: tuple[Axis, Axis] = ("x", "y")
-            rx, ry = (
-                {"closest-side": min(map(abs, pair)), "farthest-side": max(map(abs, pair))}.get(word)
-                if word.endswith("side")
-                else self._length(word, axis)
-                for word, axis, pair in zip(words, axes, to_sides, strict=True)
-            )
-        if not rx or not ry or rx <= 0.0 or ry <= 0.0:
+            words = radii if len(radii) == 2 else ["closest-side"] * 2
+            rx, ry = self._radius(words[0], "x", across), self._radius(words[1], "y", down)
+        if rx <= 0.0 or ry <= 0.0:
             return BasicShape([])
         return BasicShape([ellipse(self._x + x, self._y + y, rx, ry)])
+
+    def _radius(self, word: str, axis: Axis, to_sides: tuple[float, ...]) -> float:
+        if word == "closest-side":
+            return min(to_sides)
+        return max(to_sides) if word == "farthest-side" else self._length(word, axis)
 
     def _rectangle(self, x: float, y: float, width: float, height: float, radii: list[str]) -> BasicShape:
         if width <= 0.0 or height <= 0.0:

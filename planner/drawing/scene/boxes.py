@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from planner.arrays import FloatArray
 from planner.drawing.drawing import Outline
 from planner.drawing.flatten import extent
+from planner.drawing.scene.place import Window
 from planner.drawing.subpath import Subpath
-from planner.drawing.transforms import Box
+from planner.drawing.transforms import IDENTITY, Box
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
 
 
 def box_of_subpaths(subpaths: Sequence[Subpath]) -> Box | None:
@@ -18,7 +23,7 @@ def box_of_subpaths(subpaths: Sequence[Subpath]) -> Box | None:
     drawn = [Outline(subpath.beziers) for subpath in subpaths if subpath.is_vertex.any()]
     if not drawn:
         return None
-    low, high = extent(drawn, _IDENTITY)
+    low, high = extent(drawn, IDENTITY)
     return float(low[0]), float(low[1]), float(high[0] - low[0]), float(high[1] - low[1])
 
 
@@ -37,6 +42,13 @@ def corners_of(box: Box, affine: FloatArray) -> FloatArray:
     return moved
 
 
+def window_region(window: Window) -> BaseGeometry:
+    """What a viewport leaves to be seen, in user units."""
+    import shapely
+
+    return shapely.Polygon(corners_of(window.box, window.to_user))
+
+
 def union(boxes: Iterable[Box | None]) -> Box | None:
     """The box around all that there are."""
     found = np.array([box for box in boxes if box is not None])
@@ -45,6 +57,3 @@ def union(boxes: Iterable[Box | None]) -> Box | None:
     x, y = found[:, :2].min(axis=0).tolist()
     right, bottom = (found[:, :2] + found[:, 2:]).max(axis=0).tolist()
     return x, y, right - x, bottom - y
-
-
-_IDENTITY = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])

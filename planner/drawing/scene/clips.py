@@ -14,14 +14,15 @@ from planner.drawing.cut.region import region
 from planner.drawing.drawing import Outline
 from planner.drawing.flatten import flatten_all
 from planner.drawing.scene.basic_shapes import basic_shape
-from planner.drawing.scene.boxes import corners_of
-from planner.drawing.scene.place import NESTING_LIMIT, Clipped, Inside, Leaf, Place, Window
+from planner.drawing.scene.boxes import window_region
+from planner.drawing.scene.place import NESTING_LIMIT, Clipped, Leaf, Place, Window, resource_place
 from planner.drawing.scene.references import by_href, by_url
 from planner.drawing.scene.shape import Paint, Shape
 from planner.drawing.scene.walk import Tree, attribute_length, box_of, leaves
 from planner.drawing.shapes import SHAPES
 from planner.drawing.style.colour import parse_url
-from planner.drawing.style.style import Axis, Style
+from planner.drawing.style.style import Style
+from planner.drawing.style.units import Axis
 from planner.drawing.subpath import Subpath
 from planner.drawing.transforms import IDENTITY, Box, local_transform, scaling, translation
 from planner.drawing.xml_tree import Element
@@ -148,22 +149,14 @@ class Clips:
         if has_greys:
             self._tree.work.skipped["mask with greys"] += 1
         frame = window_region(Window((left, top, across, down), place.to_user))
-        own = [
-            found
-            for found in (
-                self._of_clip_path(style["clip-path"], style, replace(place, inside=inner.inside), box),
-                self._of_mask(style["mask"], replace(place, inside=inner.inside), box),
-            )
-            if found is not None
-        ]
-        return shapely.intersection_all([area, frame, *own])
+        return shapely.intersection(area, frame)
 
     def _resource(self, url: str, tag: str, place: Place) -> Element | None:
         """The element that clips, unless something clips itself by it."""
         if not url.startswith("#"):
             self._tree.work.skipped["external reference"] += 1
         found = by_url(self._tree.document, url, tag)
-        if found is None:
+        if found is None or not self._tree.is_rendered(found):
             return None
         if place.inside is not None and place.inside.holds(found):
             self._tree.work.skipped["reference to itself"] += 1
@@ -178,34 +171,13 @@ class _Lazy:
     """A box that is worked out when it is asked for first."""
 
     def __init__(self, make: Callable[[], Box]) -> None:
-        self._make, self._made = make, None
+        self._make = make
+        self._made: Box | None = None
 
     def __call__(self) -> Box:
         if self._made is None:
             self._made = self._make()
         return self._made
-
-
-def resource_place(
-    element: Element, style: Style, place: Place, to_user: FloatArray, viewport: tuple[float, float]
-) -> Place:
-    """The place of what an element shows only where another one, at `place`, refers to it."""
-    depth = place.inside.depth + 1 if place.inside else 1
-    return Place(
-        to_user,
-        style,
-        viewport,
-        layer=place.layer,
-        has_layer=True,
-        inside=Inside(element, place.inside, depth),
-        nesting=place.nesting + 1,
-    )
-
-
-def window_region(window: Window) -> BaseGeometry:
-    import shapely
-
-    return shapely.Polygon(corners_of(window.box, window.to_user))
 
 
 def finite(subpaths: Iterable[Subpath]) -> list[Subpath]:
@@ -220,7 +192,8 @@ def _seen_through(shapes: Sequence[Shape], is_luminance: bool) -> tuple[BaseGeom
     """Where a mask lets anything through, and whether anywhere it does so in part only."""
     import shapely
 
-    area, has_greys = shapely.Polygon(), False
+    area: BaseGeometry = shapely.Polygon()
+    has_greys = False
     for shape in shapes:
         for paint, painted in _painted(shape):
             painted = shapely.intersection_all([painted, *shape.clips])

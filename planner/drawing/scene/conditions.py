@@ -17,8 +17,8 @@ def is_met(element: Element) -> bool:
 
 
 def fitting_child(switch: Element) -> Element | None:
-    """The child of a `switch` that is shown: the first one of SVG whose conditions hold. A `foreignObject`, which no pen
-    draws, is passed over where there is another one: it says the same in other words."""
+    """The child of a `switch` that is shown: the first one of SVG whose conditions hold. A `foreignObject`, which no
+    pen draws, is passed over where there is another one: it says the same in other words."""
     fitting = [child for child in switch.children if child.tag and is_met(child)]
     return next((child for child in fitting if child.tag != "foreignObject"), fitting[0] if fitting else None)
 

@@ -9,13 +9,12 @@ from dataclasses import dataclass, replace
 from urllib.parse import unquote_to_bytes
 
 from planner.affine import compose
-from planner.drawing.scene.conditions import is_met
+from planner.drawing.scene.page import FALLBACK, OwnSize, own_size, size_for_percentages
 from planner.drawing.scene.place import NESTING_LIMIT, Leaf, Place, Window
 from planner.drawing.scene.references import href
-from planner.drawing.scene.page import FALLBACK, OwnSize, own_size, size_for_percentages
 from planner.drawing.scene.viewport import fitted
 from planner.drawing.scene.walk import Tree, entered, hides_overflow, in_viewport, leaves
-from planner.drawing.source import SvgInMemory, read_source
+from planner.drawing.source import SIZE_LIMIT_BYTES
 from planner.drawing.style.style import Styles
 from planner.drawing.transforms import Box, translation
 from planner.drawing.xml_tree import Document, read_tree
@@ -23,7 +22,6 @@ from planner.errors import DrawingError
 
 _UNKNOWN = (300.0, 150.0)
 """The size of a picture that does not say how large it is (CSS Images 3, section 5)."""
-_SVG_TYPES = ("image/svg+xml", "text/xml", "application/xml")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -41,13 +39,13 @@ def embedded_svg(reference: str, source: str) -> Document | None:
     """The SVG in a `data:` reference; None where it holds something else, or none that can be read."""
     head, comma, body = reference.partition(",")
     kind, *parameters = head.removeprefix("data:").split(";")
-    if not comma or kind.strip().lower() not in (*_SVG_TYPES, ""):
+    if not comma or kind.strip().lower() != "image/svg+xml":
         return None
     try:
         data = unquote_to_bytes(body)
         if "base64" in (parameter.strip().lower() for parameter in parameters):
             data = base64.b64decode(b"".join(data.split()) + b"==")
-        return read_tree(read_source(SvgInMemory(source, data)), source)
+        return read_tree(data, source) if len(data) <= SIZE_LIMIT_BYTES else None
     except (binascii.Error, ValueError, DrawingError):
         return None
 
@@ -63,7 +61,7 @@ def picture_of(tree: Tree, leaf: Leaf) -> Picture | None:
     document = embedded_svg(reference, tree.document.source) if is_embedded else None
     if document is None:
         box = (x, y, width, height) if width is not None and height is not None else None
-        return Picture("image" if is_embedded else "external reference", box)
+        return Picture("image", box)
     if place.nesting >= NESTING_LIMIT:
         return Picture("references nested too deeply", None)
     tree.work.skipped.update(document.skipped)
@@ -71,7 +69,8 @@ def picture_of(tree: Tree, leaf: Leaf) -> Picture | None:
     root = document.root
     size = own_size(root, styles.of(root, styles.root(FALLBACK), size_for_percentages(root)))
     box_size = _box_size(width, height, size)
-    natural = size.within(box_size)
+    # One that gives no size at all is as large as its place: then its own aspect ratio counts, not that of the image.
+    natural = box_size if size.width is None and size.height is None else size.within(box_size)
     if min(*box_size, *natural) <= 0.0:
         return None
     aspect = leaf.element.attributes.get("preserveAspectRatio")
@@ -97,7 +96,7 @@ def _shown(tree: Tree, size: tuple[float, float]) -> Iterator[Leaf]:
     """What the outermost `svg` of a picture of some size shows."""
     root, around = tree.document.root, tree.root
     style = tree.styles.of(root, around.style, around.viewport)
-    if style["display"] != "none" and is_met(root):
+    if style["display"] != "none":
         inner = in_viewport(root, style, entered(tree, root, style, around), 0.0, 0.0, *size)
         if inner is not None:
             yield from leaves(tree, root.children, inner)

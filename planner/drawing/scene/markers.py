@@ -1,16 +1,23 @@
-"""Where markers sit on a path, and which way they point (SVG 2, section 13.7)."""
+"""Where markers sit on a path, which way they point, and how large they are (SVG 2, section 13.7)."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from planner.affine import compose, rotation
+from planner.drawing.scene.place import Clipped, Leaf, Place, Window, resource_place
+from planner.drawing.scene.viewport import fitted, parse_view_box
+from planner.drawing.scene.walk import Tree, attribute_length, hides_overflow
 from planner.drawing.subpath import Subpath
+from planner.drawing.transforms import IDENTITY, parse_angle, scaling, translation
+from planner.drawing.xml_tree import Element
 
 Vector = tuple[float, float]
+_SAME_ANGLE_DEG = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +43,8 @@ class _Corner:
         if self.coming is None or self.going is None:
             return _angle_deg(self.going or self.coming or (0.0, 0.0))
         first, second = _angle_deg(self.coming), _angle_deg(self.going)
+        if abs(abs(first - second) - 180.0) < _SAME_ANGLE_DEG:  # straight back: no side is between the two
+            return first
         if abs(first - second) > 180.0:
             first += 360.0
         return (first + second) / 2.0
@@ -56,11 +65,11 @@ def _corners(subpath: Subpath) -> list[_Corner]:
     (start, *_), ends = subpath.beziers[0].tolist(), np.flatnonzero(subpath.is_vertex)
     corners = [_Corner((start[0], start[1]), None, None)]
     first = 0
-    for end in ends:
+    for end in ends.tolist():
         corners[-1].going = _tangent(subpath.beziers[first].tolist())
         backwards = _tangent(subpath.beziers[end, ::-1].tolist())
         x, y = subpath.beziers[end, 3].tolist()
-        corners.append(_Corner((x, y), (-backwards[0], -backwards[1]), None))
+        corners.append(_Corner((x, y), (0.0 - backwards[0], 0.0 - backwards[1]), None))
         first = end + 1
     if subpath.is_closed and len(corners) > 1:
         corners[0].coming, corners[-1].going = corners[-1].coming, corners[0].going
@@ -75,3 +84,41 @@ def _tangent(points: Sequence[Sequence[float]]) -> Vector:
 
 def _angle_deg(direction: Vector) -> float:
     return math.degrees(math.atan2(direction[1], direction[0]))
+
+
+def marker_place(tree: Tree, marker: Element, leaf: Leaf, vertex: Vertex) -> Place | None:
+    """The place of what a marker shows at a vertex of a leaf; None where nothing of it can be seen."""
+    style, attributes = tree.style_of(marker), marker.attributes
+    unit = 1.0
+    if attributes.get("markerUnits") != "userSpaceOnUse":
+        unit = leaf.style.length("stroke-width", "diagonal") or 0.0
+    width = attribute_length(style, attributes.get("markerWidth", "3"), "x", None)
+    height = attribute_length(style, attributes.get("markerHeight", "3"), "y", None)
+    view_box = parse_view_box(attributes.get("viewBox"))
+    if min(unit, width, height) <= 0.0 or (view_box is not None and min(view_box[2:]) == 0.0):
+        return None
+    turn = rotation(_orientation_deg(attributes.get("orient", "0").strip(), vertex))
+    at = compose(translation(vertex.x, vertex.y), compose(turn, scaling(unit, unit)))
+    fit = IDENTITY
+    if view_box is not None:
+        fit = fitted(view_box, (width, height), attributes.get("preserveAspectRatio"))
+    ref_x = attribute_length(style, attributes.get("refX", "0"), "x", None)
+    ref_y = attribute_length(style, attributes.get("refY", "0"), "y", None)
+    x, y = (fit[:, :2] @ (ref_x, ref_y) + fit[:, 2]).tolist()
+    frame = compose(leaf.place.to_user, compose(at, translation(-x, -y)))
+    viewport = view_box[2:] if view_box is not None else (width, height)
+    place = resource_place(marker, style, leaf.place, compose(frame, fit), viewport)
+    clips = leaf.place.clips
+    if hides_overflow(style):
+        clips = (*clips, Window((0.0, 0.0, width, height), frame))
+    if style["clip-path"] != "none" or style["mask"] != "none":
+        clips = (*clips, Clipped(marker, style, replace(place, clips=clips)))
+    return replace(place, opacity=leaf.place.opacity, clips=clips, context=leaf)
+
+
+def _orientation_deg(orient: str, vertex: Vertex) -> float:
+    if orient == "auto":
+        return vertex.angle_deg
+    if orient == "auto-start-reverse":
+        return vertex.angle_deg + (180.0 if vertex.name == "marker-start" else 0.0)
+    return math.degrees(parse_angle(orient) or 0.0)

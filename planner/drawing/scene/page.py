@@ -49,8 +49,8 @@ class OwnSize:
 
 
 def own_size(root: Element, style: Style, dpi: float = 96.0) -> OwnSize:
-    """The size of a document. `dpi` is how many pixels without a unit go to an inch: lengths in millimetres and the like
-    stay as long as they are. Percentages are of the view box."""
+    """The size of a document. `dpi` is how many pixels, which lengths without a unit are, go to an inch; millimetres
+    and the like stay as long as they are. Percentages are of the view box."""
     view_box = parse_view_box(root.attributes.get("viewBox"))
     width, height = (_length(style, name, view_box is not None, dpi) for name in ("width", "height"))
     return OwnSize(width, height, view_box)

@@ -7,28 +7,25 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from planner.affine import compose, rotation
+from planner.affine import compose
 from planner.arrays import FloatArray
 from planner.drawing.path_data import has_foreign_characters, has_unusable_numbers
-from planner.drawing.scene.boxes import box_of_subpaths, corners_of, moved_box
-from planner.drawing.scene.clips import Clips, resource_place, window_region
+from planner.drawing.scene.boxes import box_of_subpaths, moved_box
+from planner.drawing.scene.clips import Clips
 from planner.drawing.scene.images import picture_of
-from planner.drawing.scene.markers import Vertex, vertices
-from planner.drawing.scene.paints import AnyPaint, paint_of
-from planner.drawing.scene.patterns import Tiles
-from planner.drawing.scene.place import NESTING_LIMIT, Clipped, Leaf, Place, Window
+from planner.drawing.scene.lettering import glyphs_of
+from planner.drawing.scene.markers import marker_place, vertices
+from planner.drawing.scene.paints import paint_of
+from planner.drawing.scene.patterns import Tiles, tiled
+from planner.drawing.scene.place import NESTING_LIMIT, Leaf, Place, resource_place
 from planner.drawing.scene.references import by_url
 from planner.drawing.scene.shape import Paint, Shape, Stroke
-from planner.drawing.scene.strokes import closed, is_dot, stroke_lines, without_still_curves
-from planner.drawing.scene.viewport import fitted, parse_view_box
-from planner.drawing.scene.walk import Tree, attribute_length, hides_overflow, leaves
+from planner.drawing.scene.strokes import closed, stroke_lines, without_still_curves
+from planner.drawing.scene.walk import Tree, leaves
 from planner.drawing.shapes import SHAPES, outline_of, rectangle
 from planner.drawing.style.colour import parse_url
-from planner.drawing.style.style import Style
 from planner.drawing.subpath import Subpath
-from planner.drawing.transforms import IDENTITY, parse_angle, scaling, translation
+from planner.drawing.transforms import IDENTITY
 from planner.drawing.xml_tree import Element
 
 if TYPE_CHECKING:
@@ -77,14 +74,14 @@ class Painter:
         outline = self._outlines(leaf)
         if not outline:
             return
-        self._outline(leaf, outline)
+        self._outline(leaf, outline, outline)
         if leaf.element.tag in _HAS_MARKERS:
             self._markers(leaf, outline)
 
     def _outlines(self, leaf: Leaf) -> Sequence[Subpath]:
-        """The outline of a shape, its numbers looked at and counted."""
+        """The outline of a shape or of a text, its numbers looked at and counted."""
         if leaf.element.tag == "text":
-            return []
+            return [path for run in glyphs_of(self._tree, leaf, is_area=True) for path in run.subpaths]
         if leaf.element.tag == "path":
             data = leaf.style["d"]
             if has_unusable_numbers(data):
@@ -93,17 +90,16 @@ class Painter:
             if has_foreign_characters(data):
                 self._tree.work.skipped["path with unreadable data"] += 1
         outline = outline_of(leaf.element, leaf.style)
-        self._tree.work.subpaths(len(outline), sum(len(path.beziers) for path in outline))
+        self._count(outline)
         return outline
 
-    def _outline(self, leaf: Leaf, outline: Sequence[Subpath]) -> None:
+    def _outline(self, leaf: Leaf, outline: Sequence[Subpath], whole: Sequence[Subpath]) -> None:
+        """An outline with fill and stroke; `whole` is what the box of its paints is around."""
         style, place = leaf.style, leaf.place
-
-        def box() -> tuple[float, float, float, float] | None:
-            return box_of_subpaths(outline)
-
-        fill = paint_of(self._tree, "fill", style, place, box) if leaf.element.tag != "line" else None
-        stroke = self._stroke(leaf, box)
+        fill = None
+        if leaf.element.tag != "line":
+            fill = paint_of(self._tree, "fill", style, place, lambda: box_of_subpaths(whole))
+        stroke = self._stroke(leaf, whole)
         if fill is None and stroke is None:
             return
         clips = self._clips.regions(place.clips)
@@ -111,10 +107,11 @@ class Painter:
         if isinstance(fill, Tiles):
             fill = self._tiled(fill, leaf, drawn, clips)
         if stroke is not None:
-            to_px = compose(self._tree.px_per_user, place.to_user)
-            lines = stroke_lines(leaf.element, style, drawn, fill is not None, to_px)
+            lines = stroke_lines(
+                leaf.element, style, drawn, fill is not None, lambda: compose(self._tree.px_per_user, place.to_user)
+            )
         elif fill is not None:
-            lines = [closed(path) for path in drawn if not is_dot(path)]
+            lines = [closed(path) for path in drawn if not path.is_dot]
         else:
             return
         moved = self._moved([*drawn, *lines], place.to_user)
@@ -123,7 +120,7 @@ class Painter:
                 tuple(moved[path] for path in drawn if path in moved),
                 tuple(moved[path] for path in lines if path in moved),
                 fill,
-                style["fill-rule"] == "evenodd",
+                _is_even_odd(leaf),
                 stroke,
                 clips,
                 place.layer,
@@ -132,19 +129,22 @@ class Painter:
 
     def _moved(self, paths: Iterable[Subpath], to_user: FloatArray) -> dict[Subpath, Subpath]:
         """Each path in user units, those left out that end up nowhere."""
-        is_squeezed = abs(np.linalg.det(to_user[:, :2])) == 0.0
-        moved = {}
-        for path in dict.fromkeys(paths) if not is_squeezed else ():
+        moved: dict[Subpath, Subpath] = {}
+        if _scale(to_user) == 0.0:
+            return moved
+        for path in dict.fromkeys(paths):
             there = path if to_user is IDENTITY else path.moved(to_user)
-            if np.all(np.abs(there.beziers) < LARGEST_COORDINATE):
+            if max(there.beziers.max(), -there.beziers.min()) < LARGEST_COORDINATE:
                 moved[path] = there
             else:
                 self._tree.work.skipped["path with unusable numbers"] += 1
         return moved
 
-    def _stroke(self, leaf: Leaf, box: object) -> Stroke | None:
+    def _stroke(self, leaf: Leaf, whole: Sequence[Subpath]) -> Stroke | None:
         width = leaf.style.length("stroke-width", "diagonal") or 0.0
-        paint = paint_of(self._tree, "stroke", leaf.style, leaf.place, box) if width > 0.0 else None
+        if width <= 0.0:
+            return None
+        paint = paint_of(self._tree, "stroke", leaf.style, leaf.place, lambda: box_of_subpaths(whole))
         if paint is None:
             return None
         to_user = leaf.place.to_user
@@ -166,7 +166,7 @@ class Painter:
             return
         for vertex in vertices(outline):
             if vertex.name in markers:
-                place = self._marker_place(markers[vertex.name], leaf, vertex)
+                place = marker_place(self._tree, markers[vertex.name], leaf, vertex)
                 if place is not None:
                     self._shapes.extend(self.shapes(leaves(self._tree, markers[vertex.name].children, place)))
 
@@ -178,45 +178,11 @@ class Painter:
         if place.nesting >= NESTING_LIMIT:
             self._tree.work.skipped["references nested too deeply"] += 1
             return False
-        return True
+        return self._tree.is_rendered(resource)
 
-    def _marker_place(self, marker: Element, leaf: Leaf, vertex: Vertex) -> Place | None:
-        """The place of what a marker shows at a vertex; None where nothing of it can be seen."""
-        style = self._tree.style_of(marker)
-        attributes = marker.attributes
-        unit = 1.0
-        if attributes.get("markerUnits") != "userSpaceOnUse":
-            unit = leaf.style.length("stroke-width", "diagonal") or 0.0
-        width = attribute_length(style, attributes.get("markerWidth", "3"), "x", None)
-        height = attribute_length(style, attributes.get("markerHeight", "3"), "y", None)
-        view_box = parse_view_box(attributes.get("viewBox"))
-        if min(unit, width, height) <= 0.0 or (view_box is not None and min(view_box[2:]) == 0.0):
-            return None
-        orient = attributes.get("orient", "0").strip()
-        if orient in ("auto", "auto-start-reverse"):
-            is_turned = orient != "auto" and vertex.name == "marker-start"
-            angle_deg = vertex.angle_deg + (180.0 if is_turned else 0.0)
-        else:
-            angle_deg = math.degrees(parse_angle(orient) or 0.0)
-        at = compose(translation(vertex.x, vertex.y), compose(rotation(angle_deg), scaling(unit, unit)))
-        fit = IDENTITY
-        if view_box is not None:
-            fit = fitted(view_box, (width, height), attributes.get("preserveAspectRatio"))
-        ref_x = attribute_length(style, attributes.get("refX", "0"), "x", None)
-        ref_y = attribute_length(style, attributes.get("refY", "0"), "y", None)
-        x, y = (fit[:, :2] @ (ref_x, ref_y) + fit[:, 2]).tolist()
-        frame = compose(leaf.place.to_user, compose(at, translation(-x, -y)))
-        viewport = view_box[2:] if view_box is not None else (width, height)
-        place = resource_place(marker, style, leaf.place, compose(frame, fit), viewport)
-        clips = leaf.place.clips
-        if hides_overflow(style):
-            clips = (*clips, Window((0.0, 0.0, width, height), frame))
-        place = replace(place, opacity=leaf.place.opacity, clips=clips, context=leaf)
-        if style["clip-path"] != "none" or style["mask"] != "none":
-            place = replace(place, clips=(*clips, Clipped(marker, style, place)))
-        return place
-
-    def _tiled(self, tiles: Tiles, leaf: Leaf, outline: Sequence[Subpath], clips: tuple[BaseGeometry, ...]) -> AnyPaint:
+    def _tiled(
+        self, tiles: Tiles, leaf: Leaf, outline: Sequence[Subpath], clips: tuple[BaseGeometry, ...]
+    ) -> Paint | None:
         """Paint the tiles of a fill; what remains to be painted of it, where they are too many to be drawn."""
         from planner.drawing.cut.region import region
 
@@ -234,23 +200,8 @@ class Painter:
             self._tree.work.skipped["pattern of too many tiles"] += 1
             return _BLACK
         self._tree.work.subpaths(n_subpaths * len(moves), 0)
-        whole = region(list(self._moved(outline, place.to_user).values()), leaf.style["fill-rule"] == "evenodd")
-        frame = window_region(Window(tiles.tile, tiles.to_user))
-        is_held = [_is_within(shape, tiles) for shape in content]
-        for move in moves:
-            for shape, held in zip(content, is_held, strict=True):
-                own = shape.clips if held else (*shape.clips, frame)
-                self._shapes.append(
-                    Shape(
-                        tuple(path.moved(move) for path in shape.outline),
-                        tuple(path.moved(move) for path in shape.lines),
-                        shape.fill,
-                        shape.is_even_odd,
-                        shape.stroke,
-                        (*(_moved_region(clip, move) for clip in own), whole, *clips),
-                        place.layer,
-                    )
-                )
+        whole = region(list(self._moved(outline, place.to_user).values()), _is_even_odd(leaf))
+        self._shapes.extend(tiled(content, tiles, moves, (whole, *clips)))
         return None
 
     def _image(self, leaf: Leaf) -> None:
@@ -270,30 +221,39 @@ class Painter:
         self._tree.work.skipped[picture.kind] += 1
 
     def _text(self, leaf: Leaf) -> None:
-        if any(element.text.strip() for element in leaf.element.descendants()):
-            self._tree.work.skipped["text"] += 1
+        runs = glyphs_of(self._tree, leaf, is_area=self._is_mask)
+        whole = [path for run in runs for path in run.subpaths]
+        self._count(whole)
+        for run in runs:
+            part = replace(leaf, style=run.style)
+            if run.is_single_line:
+                self._single_lines(part, run.subpaths, whole)
+            else:
+                self._outline(part, run.subpaths, whole)
+
+    def _single_lines(self, leaf: Leaf, lines: Sequence[Subpath], whole: Sequence[Subpath]) -> None:
+        """Letters without an inside: a pen writes them wherever either of their paints can be seen."""
+        stroke = self._stroke(leaf, whole)
+        fill = paint_of(self._tree, "fill", leaf.style, leaf.place, lambda: box_of_subpaths(whole))
+        paint = stroke.paint if fill is None and stroke is not None else fill
+        if paint is None:
+            return
+        moved = tuple(self._moved(lines, leaf.place.to_user).values())
+        pen = Stroke(paint if isinstance(paint, Paint) else _BLACK, 0.0)
+        clips = self._clips.regions(leaf.place.clips)
+        self._shapes.append(Shape((), moved, None, False, pen, clips, leaf.place.layer))
+
+    def _count(self, paths: Sequence[Subpath]) -> None:
+        self._tree.work.subpaths(len(paths), sum(len(path.beziers) for path in paths))
+
+
+def _is_even_odd(leaf: Leaf) -> bool:
+    return leaf.element.tag != "text" and leaf.style["fill-rule"] == "evenodd"
 
 
 def _scale(affine: FloatArray) -> float:
-    return math.sqrt(abs(float(np.linalg.det(affine[:, :2]))))
-
-
-def _is_within(shape: Shape, tiles: Tiles) -> bool:
-    """Whether all that a shape draws lies in the tile."""
-    from planner.affine import inverse
-
-    x, y, width, height = tiles.tile
-    slack = 1e-9 * max(width, height)
-    back = inverse(tiles.to_user)
-    for path in shape.lines:
-        points = path.beziers @ back[:, :2].T + back[:, 2]
-        low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
-        if np.any(low < np.array((x, y)) - slack) or np.any(high > np.array((x + width, y + height)) + slack):
-            return False
-    return True
-
-
-def _moved_region(clip: BaseGeometry, move: FloatArray) -> BaseGeometry:
-    import shapely
-
-    return shapely.transform(clip, lambda points: points + move[:, 2])
+    """By how much lengths grow in the mean."""
+    if affine is IDENTITY:
+        return 1.0
+    (a, c, _), (b, d, _) = affine.tolist()
+    return math.sqrt(abs(a * d - b * c))

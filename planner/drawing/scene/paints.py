@@ -54,19 +54,20 @@ class _Mixer:
 
     def _seen(self, colours: list[Rgba]) -> Paint | None:
         """A paint of one or more colours, in the mean of them; None where all of them are transparent."""
-        alphas = np.array([colour.alpha for colour in colours])
-        if alphas.max(initial=0.0) <= 0.0:
+        if not any(colour.alpha > 0.0 for colour in colours):
             return None
-        red, green, blue = np.average([(one.red, one.green, one.blue) for one in colours], axis=0, weights=alphas)
-        colour = (round(float(red)), round(float(green)), round(float(blue)))
-        return Paint(colour, bool(self._opacity >= 1.0 and alphas.min() >= 1.0))
+        red, green, blue = (
+            round(sum(values) / len(colours))
+            for values in zip(*((one.red, one.green, one.blue) for one in colours), strict=True)
+        )
+        return Paint((red, green, blue), self._opacity >= 1.0 and all(colour.alpha >= 1.0 for colour in colours))
 
     def _referenced(self, value: PaintValue) -> AnyPaint:
         target = by_url(self._tree.document, value.url, "pattern", *_GRADIENTS)
         if target is None and not value.url.startswith("#"):
             self._tree.work.skipped["external reference"] += 1
         fallback = self.paint(value.fallback) if value.fallback is not None else None
-        if target is None:
+        if target is None or not self._tree.is_rendered(target):
             return fallback
         box = self._box()
         if target.tag == "pattern":

@@ -1,22 +1,29 @@
-"""How the tiles of a `pattern` lie."""
+"""How the tiles of a `pattern` lie, and what they show."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from planner.affine import compose, inverse
 from planner.arrays import FloatArray
-from planner.drawing.scene.boxes import moved_box
-from planner.drawing.scene.place import Place
+from planner.drawing.scene.boxes import moved_box, window_region
+from planner.drawing.scene.place import Place, Window
 from planner.drawing.scene.references import chain, inherited_attribute
+from planner.drawing.scene.shape import Shape
 from planner.drawing.scene.viewport import fitted, parse_view_box
 from planner.drawing.scene.walk import Tree, attribute_length
-from planner.drawing.style.style import Axis, Style
+from planner.drawing.style.style import Style
+from planner.drawing.style.units import Axis
 from planner.drawing.transforms import IDENTITY, Box, local_transform, scaling, translation
 from planner.drawing.xml_tree import Element
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
 
 TILE_LIMIT = 10_000
 """Tiles of one pattern on one shape: more of them are a grey to the eye."""
@@ -97,3 +104,38 @@ def _transform(tree: Tree, patterns: list[Element], place: Place, box: Box) -> F
         if "patternTransform" in pattern.attributes or style["transform"] != "none":
             return local_transform(style, place.viewport, lambda: box)
     return IDENTITY
+
+
+def tiled(
+    content: Sequence[Shape], tiles: Tiles, moves: Sequence[FloatArray], clips: tuple[BaseGeometry, ...]
+) -> Iterator[Shape]:
+    """What one tile shows, at every place of the tile, within all of some regions."""
+    frame = window_region(Window(tiles.tile, tiles.to_user))
+    back = inverse(tiles.to_user)
+    own = [shape.clips if _is_within(shape, back, tiles.tile) else (*shape.clips, frame) for shape in content]
+    for move in moves:
+        for shape, regions in zip(content, own, strict=True):
+            yield replace(
+                shape,
+                outline=tuple(path.moved(move) for path in shape.outline),
+                lines=tuple(path.moved(move) for path in shape.lines),
+                clips=(*clips, *(_moved(region, move) for region in regions)),
+            )
+
+
+def _is_within(shape: Shape, to_pattern: FloatArray, tile: Box) -> bool:
+    """Whether all that a shape draws lies in the tile."""
+    x, y, width, height = tile
+    slack = 1e-9 * max(width, height)
+    for path in shape.lines:
+        points = path.beziers @ to_pattern[:, :2].T + to_pattern[:, 2]
+        low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
+        if np.any(low < np.array((x, y)) - slack) or np.any(high > np.array((x + width, y + height)) + slack):
+            return False
+    return True
+
+
+def _moved(region: BaseGeometry, move: FloatArray) -> BaseGeometry:
+    import shapely
+
+    return shapely.transform(region, lambda points: points + move[:, 2])

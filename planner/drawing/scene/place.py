@@ -83,6 +83,22 @@ class Leaf:
     place: Place
 
 
+def resource_place(
+    element: Element, style: Style, place: Place, to_user: FloatArray, viewport: tuple[float, float]
+) -> Place:
+    """The place of what an element shows only where another one, at `place`, refers to it."""
+    depth = place.inside.depth + 1 if place.inside else 1
+    return Place(
+        to_user,
+        style,
+        viewport,
+        layer=place.layer,
+        has_layer=True,
+        inside=Inside(element, place.inside, depth),
+        nesting=place.nesting + 1,
+    )
+
+
 @dataclass(slots=True)
 class Work:
     """What has been done so far, against the limits, and what was left out, by kind."""

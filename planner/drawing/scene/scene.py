@@ -10,13 +10,12 @@ import numpy as np
 from planner.arrays import frozen
 from planner.drawing.options import ReadingOptions
 from planner.drawing.scene.boxes import box_of_subpaths
-from planner.drawing.scene.conditions import is_met
 from planner.drawing.scene.page import FALLBACK, OwnSize, Page, own_size, page_of, size_for_percentages
 from planner.drawing.scene.painter import Painter
 from planner.drawing.scene.place import Clipped, Inside, Leaf, Place, Work
 from planner.drawing.scene.shape import Scene, Shape
-from planner.drawing.scene.walk import Tree, leaves
 from planner.drawing.scene.viewport import parse_view_box
+from planner.drawing.scene.walk import Tree, leaves
 from planner.drawing.style.style import Styles
 from planner.drawing.transforms import IDENTITY
 from planner.drawing.xml_tree import Document, Element
@@ -67,7 +66,7 @@ def _root_place(root: Element, styles: Styles, page: Page) -> Place:
 def _shown(tree: Tree) -> Iterator[Leaf]:
     root, place = tree.document.root, tree.root
     tree.work.skipped.update(place.style.unhonoured())
-    if place.style["display"] != "none" and is_met(root):
+    if place.style["display"] != "none":
         yield from leaves(tree, root.children, place)
 
 

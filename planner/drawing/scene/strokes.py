@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -15,8 +15,8 @@ from planner.drawing.xml_tree import Element
 
 def without_still_curves(subpath: Subpath) -> Subpath:
     """Without curves of no length; one that has no length at all is one curve."""
-    has_length = np.any(subpath.beziers[:, 1:] != subpath.beziers[:, :1], axis=(1, 2))
-    if np.all(has_length):
+    has_length = (subpath.beziers[:, 1:] != subpath.beziers[:, :1]).any(axis=(1, 2))
+    if has_length.all():
         return subpath
     kept = has_length if np.any(has_length) else np.arange(len(has_length)) == 0
     return Subpath(frozen(subpath.beziers[kept]), subpath.is_closed, subpath.is_vertex[kept])
@@ -33,16 +33,12 @@ def closed(subpath: Subpath) -> Subpath:
     )
 
 
-def is_dot(subpath: Subpath) -> bool:
-    return len(subpath.beziers) == 1 and bool(np.all(subpath.beziers == subpath.beziers[0, 0]))
-
-
 def stroke_lines(
-    element: Element, style: Style, outline: Sequence[Subpath], has_fill: bool, to_px: FloatArray
+    element: Element, style: Style, outline: Sequence[Subpath], has_fill: bool, to_px: Callable[[], FloatArray]
 ) -> list[Subpath]:
-    """The lines of a visible stroke, and the edges that close open subpaths where there is a fill too. `to_px` leads to
-    CSS pixels on the page, which the dashes of a stroke that does not scale are measured in."""
-    outline = [path for path in outline if style["stroke-linecap"] != "butt" or not is_dot(path)]
+    """The lines of a visible stroke, and the edges that close open subpaths where there is a fill too. `to_px` gives
+    the way (2, 3) to CSS pixels on the page, which the dashes of a stroke that does not scale are measured in."""
+    outline = [path for path in outline if not path.is_dot or style["stroke-linecap"] != "butt"]
     array = dash_array(style)
     if not array:
         return [closed(path) if fills else path for path, fills in zip(outline, _fill(outline, has_fill), strict=True)]
@@ -51,8 +47,9 @@ def stroke_lines(
     offset = style.length("stroke-dashoffset", "diagonal") or 0.0
     path_length = _number(element.attributes.get("pathLength"))
     if style["vector-effect"] == "non-scaling-stroke":
-        dashes = dashed([path.moved(to_px) for path in outline], array, offset, path_length)
-        lines = [dash.moved(inverse(to_px)) for dash in dashes]
+        forth = to_px()
+        dashes = dashed([path.moved(forth) for path in outline], array, offset, path_length)
+        lines = [dash.moved(inverse(forth)) for dash in dashes]
     else:
         lines = dashed(outline, array, offset, path_length)
     edges = [

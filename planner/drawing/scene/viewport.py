@@ -9,7 +9,7 @@ import numpy as np
 from planner.arrays import FloatArray
 from planner.drawing.transforms import Box
 
-_NUMBER = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
+_NUMBER = r"((?>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))"
 _VIEW_BOX = re.compile(r"\s*" + r"(?:\s*,\s*|\s+|(?=[+-]))".join([_NUMBER] * 4) + r"\s*")
 _ASPECT = re.compile(r"\s*(?:defer\s+)?(none|x(Min|Mid|Max)Y(Min|Mid|Max))(?:\s+(meet|slice))?\s*")
 _FRACTIONS = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}

@@ -12,11 +12,13 @@ from planner.arrays import FloatArray
 from planner.drawing.options import ReadingOptions
 from planner.drawing.scene.boxes import box_of_subpaths, moved_box, union
 from planner.drawing.scene.conditions import fitting_child, is_met
+from planner.drawing.scene.lettering import glyphs_of
 from planner.drawing.scene.place import Clipped, Inside, Leaf, Place, Window, Work
 from planner.drawing.scene.references import by_href, href
 from planner.drawing.scene.viewport import fitted, parse_view_box
 from planner.drawing.shapes import SHAPES, outline_of
-from planner.drawing.style.style import Axis, Style, Styles
+from planner.drawing.style.style import Style, Styles
+from planner.drawing.style.units import Axis
 from planner.drawing.transforms import IDENTITY, Box, local_transform, translation
 from planner.drawing.xml_tree import Document, Element
 
@@ -41,9 +43,18 @@ class Tree:
         """The style of an element where it stands in the document, as those have that are shown only by reference."""
         known = self.document_styles.get(element)
         if known is None:
-            above = self.root.style if element is self.document.root else self.style_of(element.parent)
+            above = self.root.style if element.parent is None else self.style_of(element.parent)
             known = self.document_styles[element] = self.styles.of(element, above, self.root.viewport)
         return known
+
+    def is_rendered(self, resource: Element) -> bool:
+        """Whether an element that is shown by reference can be: not where `display` takes away it, or what it is in."""
+        at: Element | None = resource
+        while at is not None:
+            if self.style_of(at)["display"] == "none":
+                return False
+            at = at.parent
+        return True
 
 
 def leaves(tree: Tree, elements: Iterable[Element], place: Place) -> Iterator[Leaf]:
@@ -86,7 +97,7 @@ def leaf_box(tree: Tree, leaf: Leaf) -> Box | None:
     if leaf.element.tag in SHAPES:
         return box_of_subpaths(outline_of(leaf.element, leaf.style))
     if leaf.element.tag == "text":
-        return None
+        return box_of_subpaths([path for glyphs in glyphs_of(tree, leaf) for path in glyphs.subpaths])
     x, y = leaf.style.length("x", "x") or 0.0, leaf.style.length("y", "y") or 0.0
     width, height = leaf.style.length("width", "x") or 0.0, leaf.style.length("height", "y") or 0.0
     return (x, y, width, height) if width > 0.0 and height > 0.0 else None
@@ -150,27 +161,25 @@ def entered(tree: Tree, element: Element, style: Style, around: Place) -> Place:
     inside = Inside(element, around.inside, around.inside.depth + 1 if around.inside else 1)
     place = replace(around, style=style, inside=inside)
     transform = local_transform(style, around.viewport, lambda: box_of(tree, element, style, place))
-    changes: dict[str, object] = {}
     if transform is not IDENTITY:
-        changes["to_user"] = compose(around.to_user, transform)
+        place = replace(place, to_user=compose(around.to_user, transform))
     if style["opacity"] != "1":
-        changes["opacity"] = around.opacity * style.number("opacity")
+        place = replace(place, opacity=around.opacity * style.number("opacity"))
     if element.tag == "g":
-        changes.update(_layer(element, around))
-    if changes:
-        place = replace(place, **changes)
+        place = _on_layer(element, place)
     tree.work.skipped.update(style.unhonoured())
     if style["clip-path"] != "none" or style["mask"] != "none":
         place = replace(place, clips=(*place.clips, Clipped(element, style, place)))
     return place
 
 
-def _layer(group: Element, around: Place) -> dict[str, object]:
-    """The layer that a group makes: the innermost one that Inkscape calls so, or else the outermost group."""
+def _on_layer(group: Element, place: Place) -> Place:
+    """The layer that a group makes: the innermost one that Inkscape calls so, or else the outermost group with a
+    name."""
     name = group.attributes.get("inkscape:label", group.attributes.get("id", ""))
     if group.attributes.get("inkscape:groupmode") == "layer":
-        return {"layer": name, "has_layer": True}
-    return {"layer": name} if not around.layer and not around.has_layer else {}
+        return replace(place, layer=name, has_layer=True)
+    return place if place.layer or place.has_layer else replace(place, layer=name)
 
 
 def _viewport_box(style: Style) -> tuple[float, float, float | None, float | None]:

@@ -49,6 +49,13 @@ _TRANSFORM_ATTRIBUTES = {
     "pattern": "patternTransform",
 }
 """What the attribute for `transform` is called where it is not called that."""
+_BY_ATTRIBUTE_ALONE = {
+    "svg": ("x", "y", "width", "height"),
+    "symbol": ("x", "y", "width", "height"),
+    "use": ("width", "height"),
+    "mask": ("x", "y", "width", "height"),
+}
+"""What browsers take from the attribute whatever style sheets say; not so of the outermost `svg`."""
 _GEOMETRY = frozenset({"x", "y", "width", "height", "cx", "cy", "r", "rx", "ry"})
 ATTRIBUTE_LAYER: Layer = (-1.0,)
 _STYLE_LAYER: Layer = (*UNLAYERED, 1.0)
@@ -95,6 +102,9 @@ class Cascade:
         for rule in rules:
             _add(winners, rule.declarations, rule.layer, is_important=True)
         _add(winners, own, _STYLE_LAYER, is_important=True)
+        if tag in _BY_ATTRIBUTE_ALONE and element.parent is not None:
+            for name in winners.keys() & _BY_ATTRIBUTE_ALONE[tag]:
+                _keep_attribute(winners, name)
         variables = {name: winners.pop(name) for name in [*winners] if name[:2] == "--"}
         return Said(winners, variables)
 
@@ -129,6 +139,14 @@ def _presented(name: str, text: str) -> str | None:
         return in_attribute(name, text) if name in ("d", "transform") else in_common_attribute(name, text)
     value = in_attribute(name, text)
     return "0" if value is None and not text.lstrip().startswith("-") else value
+
+
+def _keep_attribute(winners: dict[str, Declared], name: str) -> None:
+    entry: Declared | None = winners.pop(name)
+    while entry is not None and entry.layer != ATTRIBUTE_LAYER:
+        entry = entry.below
+    if entry is not None:
+        winners[name] = entry
 
 
 def _add(winners: dict[str, Declared], given: Sequence[Declaration], layer: Layer, *, is_important: bool) -> None:

@@ -170,9 +170,9 @@ _TABLE = (
     _inherited("color-interpolation", "srgb", g.words("auto srgb linearrgb")),
     # Text (SVG 2, chapter 11)
     _inherited("font-family", "", g.anything),
-    _inherited("font-size", "medium", g.length(_FONT_SIZES, is_signed=False)),
+    _inherited("font-size", "16px", g.length(_FONT_SIZES, is_signed=False)),
     _inherited("font-style", "normal", g.font_style),
-    _inherited("font-weight", "normal", g.number("normal bold bolder lighter", least=1.0, most=1000.0)),
+    _inherited("font-weight", "400", g.number("normal bold bolder lighter", least=1.0, most=1000.0)),
     _inherited("font-stretch", "normal", g.font_stretch),
     _inherited("line-height", "normal", g.length("normal", is_unitless=True, is_signed=False), _CSS_ALONE),
     _inherited("direction", "ltr", g.words("ltr rtl")),
@@ -205,14 +205,14 @@ _TABLE = (
     _counted("border", "none", "border", "0", "0px", tags=_OUTERMOST),
     _counted("outline", "none", "border", "0", "0px", tags=_OUTERMOST),
     _counted("padding", "0", "padding", "0px", tags=_OUTERMOST),
-    _counted("font-variant", "normal", "font variant", "none", elements=ANY, tags=TEXT_ELEMENTS),
-    _counted("font-variant-caps", "normal", "font variant", tags=TEXT_ELEMENTS),
+    _counted("font-variant", "normal", "font variant", "none", "small-caps", elements=ANY, tags=TEXT_ELEMENTS),
+    _counted("font-variant-caps", "normal", "font variant", "small-caps", tags=TEXT_ELEMENTS),
     _counted("font-size-adjust", "none", "font-size-adjust", tags=TEXT_ELEMENTS),
     _counted("text-emphasis", "none", "text-emphasis", tags=TEXT_ELEMENTS),
     _counted("text-emphasis-style", "none", "text-emphasis", tags=TEXT_ELEMENTS),
     _counted("text-shadow", "none", "text-shadow", tags=TEXT_ELEMENTS),
-    # No browser knows these, or they have no effect in a drawing: `inline-size` and `shape-inside` of text, the
-    # rectangle of `clip`, the boxes of CSS, `zoom`. Or they tell how something is painted, not where.
+    # No browser knows these, or they have no effect in a drawing: `shape-inside` of text, the rectangle of `clip`, the
+    # boxes of CSS, `zoom`. Or they tell how something is painted, not where.
     *_without_bearing(
         """
         appearance aspect-ratio backface-visibility background background-color background-image buffered-rendering
@@ -221,7 +221,7 @@ _TABLE = (
         font-palette font-synthesis font-variant-alternates font-variant-east-asian font-variant-emoji
         font-variant-ligatures font-variant-numeric font-variant-position font-variation-settings
         forced-color-adjust glyph-orientation-horizontal glyph-orientation-vertical hyphens image-orientation
-        image-rendering inline-size isolation kerning lighting-color line-break margin mix-blend-mode object-fit
+        image-rendering isolation kerning lighting-color line-break margin mix-blend-mode object-fit
         object-position offset-anchor offset-distance offset-position offset-rotate overflow-wrap paint-order
         perspective perspective-origin pointer-events position print-color-adjust quotes scroll-behavior
         shape-image-threshold shape-inside shape-margin shape-padding shape-rendering shape-subtract solid-color
@@ -251,6 +251,8 @@ ALIASES = {
     "-webkit-mask-composite": "mask-composite",
     "-webkit-animation": "animation",
     "-webkit-animation-name": "animation-name",
+    "inline-size": "width",
+    "block-size": "height",
     "overflow-x": "overflow",
     "overflow-y": "overflow",
     "offset": "offset-path",

@@ -20,7 +20,7 @@ from planner.drawing.xml_tree import Document
 _DEPTH_LIMIT = 30
 _SELECTOR_LIMIT = 10_000
 """Characters of a selector: nested rules that repeat their parents would take all memory."""
-_NOT_DRAWN = {"import": "external reference", "font-face": "embedded font", "container": "container query"}
+_NOT_DRAWN = {"import": "external reference", "font-face": "embedded font", "scope": "@scope rules"}
 """At-rules that are not followed, and what they are counted as."""
 Layer = tuple[float, ...]
 UNLAYERED: Layer = (math.inf,)

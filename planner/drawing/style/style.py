@@ -50,19 +50,22 @@ _OLD_WRITING_MODES = {
 class Style:
     """The computed style of one element in one place of the rendering tree (`use` shows an element in several)."""
 
-    __slots__ = ("_inherited", "_line_height", "_own", "_page", "_units", "_variables", "element")
+    __slots__ = ("_inherited", "_line_height", "_own", "_page", "_units", "_variables", "element", "parent")
 
     def __init__(
         self,
         page: _Page,
         element: Element | None,
+        parent: Style | None,
         own: Mapping[str, str],
         inherited: Mapping[str, str],
         variables: Mapping[str, str],
         units: Units,
     ) -> None:
-        """own: what was said of the element; inherited: what it hands down. Both computed."""
+        """parent: that of what the element is shown under. own: what was said of it; inherited: what it hands down.
+        Both computed."""
         self.element = element
+        self.parent = parent
         self._page = page
         self._own = own
         self._inherited = inherited
@@ -161,7 +164,7 @@ class Styles:
     def root(self, viewport: tuple[float, float]) -> Style:
         """That of what the outermost `svg` inherits from: initial values, with the page as the viewport."""
         page = _Page(Cascade(self._root, self._rules, viewport))
-        return Style(page, None, _NOTHING, _NOTHING, _NOTHING, units_of_page(viewport))
+        return Style(page, None, None, _NOTHING, _NOTHING, _NOTHING, units_of_page(viewport))
 
     def of(self, element: Element, parent: Style, viewport: tuple[float, float]) -> Style:
         """That of an element that is shown under something with the style `parent`; `viewport` is the size of the
@@ -195,7 +198,7 @@ def _computed(element: Element, parent: Style, viewport: tuple[float, float]) ->
         if name in INHERITED:
             handed_down[name] = value
     inherited = {**parent._inherited, **handed_down} if handed_down else parent._inherited
-    return Style(parent._page, element, values, inherited, variables, units)
+    return Style(parent._page, element, parent, values, inherited, variables, units)
 
 
 def _custom_properties(said: Mapping[str, Declared], parent: Style) -> Mapping[str, str]:

@@ -192,7 +192,9 @@ def _place(text: Text, context: TextContext) -> None:
 
 def _lengths(span: Span, name: str, axis: Axis) -> list[float]:
     """A list of lengths; empty where any of it is none, as browsers have it."""
-    values = [span.style.in_units(word, axis) for word in span.element.attributes.get(name, "").replace(",", " ").split()]
+    values = [
+        span.style.in_units(word, axis) for word in span.element.attributes.get(name, "").replace(",", " ").split()
+    ]
     return [] if None in values else [value for value in values if value is not None]
 
 

@@ -178,7 +178,12 @@ def _best(entries: Sequence[Installed], request: Request) -> Font:
         order = [_STRETCHES.index(name) if name in _STRETCHES else 4 for name in (entry.stretch, request.stretch)]
         weight = abs(entry.weight - request.weight)
         is_wrong_way = (entry.weight < request.weight) != (request.weight > 500)
-        return abs(order[0] - order[1]), entry.is_italic != request.is_italic, weight + 0.5 * is_wrong_way, str(entry.path)
+        return (
+            abs(order[0] - order[1]),
+            entry.is_italic != request.is_italic,
+            weight + 0.5 * is_wrong_way,
+            str(entry.path),
+        )
 
     best = min(entries, key=distance)
     return font_file(best.path, best.index, is_slanted=request.is_italic and not best.is_italic)

@@ -114,7 +114,9 @@ def _adjust_lengths(text: Text, order: list[int]) -> None:
             continue
         inner = [one for one in resolved if span.first <= one.first and one.stop <= span.stop]
         outermost = [
-            one for one in inner if not any(other is not one and other.first <= one.first < other.stop for other in inner)
+            one
+            for one in inner
+            if not any(other is not one and other.first <= one.first < other.stop for other in inner)
         ]
         _adjust(text, span, length, outermost, order)
         resolved.append(span)
@@ -138,9 +140,7 @@ def _adjust(text: Text, span: Span, length: float, inner: list[Span], order: lis
         return
     within = {index for one in inner for index in range(one.first, one.stop)}
     counted = [
-        index
-        for index in range(span.first, span.stop)
-        if not characters[index].is_middle and index not in within
+        index for index in range(span.first, span.stop) if not characters[index].is_middle and index not in within
     ]
     n = len(counted) + len(inner) - 1
     if n <= 0:

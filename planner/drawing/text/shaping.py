@@ -12,7 +12,6 @@ from planner.drawing.text.families import any_font_with, font_file, fonts_for
 from planner.drawing.text.fonts import Font, ShapedGlyph
 
 
-
 def shape(text: Text, options: ReadingOptions) -> list[int]:
     """Gives each character its font, glyphs and advance, and its place `u` in one line. Returns their order from left
     to right, or from top to bottom."""
