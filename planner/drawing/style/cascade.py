@@ -58,7 +58,7 @@ _BY_ATTRIBUTE_ALONE = {
 """What browsers take from the attribute whatever style sheets say; not so of the outermost `svg`."""
 _GEOMETRY = frozenset({"x", "y", "width", "height", "cx", "cy", "r", "rx", "ry"})
 ATTRIBUTE_LAYER: Layer = (-1.0,)
-_STYLE_LAYER: Layer = (*UNLAYERED, 1.0)
+STYLE_LAYER: Layer = (*UNLAYERED, 1.0)
 
 
 class Cascade:
@@ -97,11 +97,11 @@ class Cascade:
             return Said(winners, {})
         for rule in rules:
             _add(winners, rule.declarations, rule.layer, is_important=False)
-        _add(winners, own, _STYLE_LAYER, is_important=False)
+        _add(winners, own, STYLE_LAYER, is_important=False)
         rules.sort(key=_strength_of_important)
         for rule in rules:
             _add(winners, rule.declarations, rule.layer, is_important=True)
-        _add(winners, own, _STYLE_LAYER, is_important=True)
+        _add(winners, own, STYLE_LAYER, is_important=True)
         if tag in _BY_ATTRIBUTE_ALONE and element.parent is not None:
             for name in winners.keys() & _BY_ATTRIBUTE_ALONE[tag]:
                 _keep_attribute(winners, name)

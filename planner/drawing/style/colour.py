@@ -12,7 +12,7 @@ import tinycss2
 import tinycss2.color5
 from tinycss2.ast import Node
 
-from planner.drawing.style.tokens import by_comma, component_values, significant
+from planner.drawing.style.tokens import by_comma, component_values, is_comma, is_word, significant
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,10 +136,13 @@ def _from_token(token: Node) -> Rgba | Literal["currentcolor"] | None:
         if token.lower_name == "color-mix":
             return _mixed(token.arguments)
         arguments = significant(token.arguments)
-        if arguments and arguments[0] == "from":  # relative to another colour, which is near enough for a pen
+        if arguments and is_word(arguments[0], "from"):  # relative to another colour, which is near enough for a pen
             return _from_token(arguments[1]) if len(arguments) > 1 else None
-        if token.lower_name == "device-cmyk":
+        if token.lower_name == "device-cmyk" or _is_old_without_percentages(token.lower_name, arguments):
             return None
+        if len(arguments) == 5 and is_word(arguments[4], "none"):  # no alpha is none at all
+            arguments[4] = tinycss2.parse_one_component_value("0")
+            token.arguments = arguments
         if token.lower_name != "light-dark" and not all(
             argument.type in ("number", "percentage", "dimension", "ident", "literal") for argument in arguments
         ):
@@ -153,6 +156,15 @@ def _from_token(token: Node) -> Rgba | Literal["currentcolor"] | None:
     if found is None:
         return None
     return "currentcolor" if isinstance(found, str) else _srgb(found)
+
+
+def _is_old_without_percentages(name: str, arguments: Sequence[Node]) -> bool:
+    """Whether it is hsl(1, 2, 3), with commas, whose saturation and lightness have to be percentages."""
+    return (
+        name in ("hsl", "hsla")
+        and any(map(is_comma, arguments))
+        and any(argument.type == "number" for argument in arguments[2:5])
+    )
 
 
 def _mixed(arguments: Sequence[Node]) -> Rgba | Literal["currentcolor"] | None:
@@ -196,7 +208,7 @@ def _srgb(colour: tinycss2.color5.Color) -> Rgba:
         channels = tuple(_gamma(channel or 0.0) for channel in colour.coordinates)
     else:
         channels = tuple(channel or 0.0 for channel in colour.coordinates)
-    red, green, blue = (round(255.0 * min(max(channel, 0.0), 1.0)) for channel in channels)
+    red, green, blue = (int(255.0 * min(max(channel, 0.0), 1.0) + 0.5) for channel in channels)
     return Rgba(red, green, blue, colour.alpha)
 
 

@@ -19,6 +19,8 @@ from planner.drawing.style.tokens import text_of
 
 WIDE_KEYWORDS = frozenset({"inherit", "initial", "unset", "revert", "revert-layer"})
 _LONGEST_KEYWORD = max(map(len, WIDE_KEYWORDS))
+UNITLESS_IN_STYLE = frozenset({"font-size", "letter-spacing", "word-spacing", "width", "height"})
+"""What takes plain numbers in style attributes, which browsers read with the quirks of old pages, but not in sheets."""
 # What is plain enough to be cut at its semicolons and colons; the rest goes to the parser of CSS.
 _PLAIN = re.compile(r"(?:[^'\"\\{}\[\]!@/()]|\([^'\"\\{}\[\]!@/();]*\))*")
 _COMMENT = re.compile(r"/\*.*?(?:\*/|\Z)", re.DOTALL)
@@ -38,21 +40,21 @@ class Declaration(NamedTuple):
 def parse_style_attribute(text: str) -> Sequence[Declaration]:
     """The declarations of a `style` attribute in their order."""
     if not _PLAIN.fullmatch(text):
-        return declarations(tinycss2.parse_blocks_contents(text))
+        return declarations(tinycss2.parse_blocks_contents(text), is_sheet=False)
     found: list[Declaration] = []
     for part in text.split(";"):
         name, colon, value = part.partition(":")
         if colon:
-            found.extend(declared(name.strip(), value.strip()))
+            found.extend(declared(name.strip(), value.strip(), is_sheet=False))
     return found
 
 
-def declarations(content: Iterable[Node]) -> list[Declaration]:
+def declarations(content: Iterable[Node], *, is_sheet: bool = True) -> list[Declaration]:
     """Those among the nodes of a block, in their order."""
     found: list[Declaration] = []
     for node in content:
         if node.type == "declaration":
-            found.extend(declared(node.name, text_of(node.value), node.important))
+            found.extend(declared(node.name, text_of(node.value), bool(node.important), is_sheet))
     return found
 
 
@@ -61,7 +63,7 @@ def has_substitution(value: str) -> bool:
 
 
 @lru_cache(16384)
-def declared(name: str, text: str, is_important: bool = False) -> tuple[Declaration, ...]:
+def declared(name: str, text: str, is_important: bool = False, is_sheet: bool = True) -> tuple[Declaration, ...]:
     """What one declaration in CSS comes to: none where it is invalid or without bearing, several for a shorthand."""
     if name.startswith("--"):
         return (Declaration(name, text, is_important),)
@@ -72,7 +74,7 @@ def declared(name: str, text: str, is_important: bool = False) -> tuple[Declarat
         return tuple(_expanded(name, text, is_important))
     if has_substitution(text) and name in PROPERTIES:
         return (Declaration(name, text, is_important),)
-    value = valid(name, text)
+    value = valid(name, text, is_attribute=not is_sheet and name in UNITLESS_IN_STYLE)
     return () if value is None else (Declaration(name, value, is_important),)
 
 

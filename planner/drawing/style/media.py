@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 import tinycss2
 from tinycss2.ast import Node
 
-from planner.drawing.style.tokens import by_comma, significant, text_of
+from planner.drawing.style.tokens import by_comma, is_word, significant, text_of
 from planner.drawing.style.units import units_of_page
 
 Size = tuple[float, float]
@@ -69,13 +69,13 @@ def condition(tokens: Sequence[Node], test: Test) -> bool:
     parts = significant(tokens)
     if not parts:
         return False
-    if parts[0] == "not":
+    if is_word(parts[0], "not"):
         return len(parts) == 2 and not _operand(parts[1], test)
     result = _operand(parts[0], test)
     for joint, part in zip(parts[1::2], parts[2::2], strict=False):
-        if joint == "and":
+        if is_word(joint, "and"):
             result = _operand(part, test) and result
-        elif joint == "or":
+        elif is_word(joint, "or"):
             result = _operand(part, test) or result
         else:
             return False
@@ -85,7 +85,7 @@ def condition(tokens: Sequence[Node], test: Test) -> bool:
 def _operand(token: Node, test: Test) -> bool:
     if token.type == "() block":
         inner = significant(token.content)
-        if inner and (inner[0] == "not" or inner[0].type == "() block" or inner[0].type == "function"):
+        if inner and (is_word(inner[0], "not") or inner[0].type == "() block" or inner[0].type == "function"):
             return condition(inner, test)
     return test(token)
 
@@ -97,7 +97,7 @@ def _query(parts: list[Node], page: Size) -> bool:
     if parts[0].type == "ident" and (parts[0].lower_value != "not" or (parts[1:2] and parts[1].type == "ident")):
         is_not = parts[0].lower_value == "not"
         words = parts[1:] if parts[0].lower_value in ("not", "only") else parts
-        if not words or words[0].type != "ident" or (len(words) > 1 and words[1] != "and"):
+        if not words or words[0].type != "ident" or (len(words) > 1 and not is_word(words[1], "and")):
             return False
         holds = words[0].lower_value in _TYPES
         if len(words) > 1:

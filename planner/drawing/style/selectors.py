@@ -21,11 +21,10 @@ Matches = Callable[[Element], bool]
 _DYNAMIC = re.compile(
     "active|autofill|blank|buffering|checked|current|default|disabled|focus|focus-visible|focus-within|fullscreen|"
     "future|host|hover|in-range|indeterminate|invalid|local-link|modal|muted|optional|out-of-range|past|paused|"
-    "picture-in-picture|placeholder-shown|playing|popover-open|read-write|required|seeking|stalled|target|"
+    "picture-in-picture|placeholder-shown|playing|popover-open|read-only|read-write|required|seeking|stalled|target|"
     "target-within|user-invalid|user-valid|valid|visited|volume-locked|enabled"
 )
 """What depends on a user or a form: never so in a drawing."""
-_ALWAYS = frozenset({"defined", "read-only"})
 _ENDS: dict[str, tuple[tuple[bool, ...], bool]] = {
     "first-child": ((False,), False),
     "last-child": ((True,), False),
@@ -232,7 +231,7 @@ def _pseudo_class(name: str, tree: Tree) -> Matches:
         return lambda element: not any(element.content)
     if _DYNAMIC.fullmatch(name):
         return lambda element: False
-    if name in _ALWAYS:
+    if name == "defined":
         return lambda element: True
     if name not in _ENDS:
         raise SelectorError("unknown pseudo-class")

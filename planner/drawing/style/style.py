@@ -7,12 +7,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
-from planner.drawing.style.cascade import ATTRIBUTE_LAYER, Cascade, Declared
+from planner.drawing.style.cascade import ATTRIBUTE_LAYER, STYLE_LAYER, Cascade, Declared
 from planner.drawing.style.colour import BLACK, NO_PAINT, PaintValue, Rgba, parse_colour, parse_paint
-from planner.drawing.style.declarations import WIDE_KEYWORDS, has_substitution, valid
+from planner.drawing.style.declarations import UNITLESS_IN_STYLE, WIDE_KEYWORDS, has_substitution, valid
 from planner.drawing.style.properties import COUNTED, INHERITED, INITIAL, TEXT_ELEMENTS
 from planner.drawing.style.sheet import Sheets
 from planner.drawing.style.shorthands import SHORTHANDS
+from planner.drawing.style.tokens import component_values, text_of
 from planner.drawing.style.units import MEDIUM_FONT_PX, Axis, Units, normal_line_height, units_of_page
 from planner.drawing.style.variables import Unresolvable, resolved, substituted
 from planner.drawing.xml_tree import Document, Element
@@ -37,6 +38,7 @@ _OF_FONT = frozenset({"letter-spacing", "word-spacing", "baseline-shift", "line-
 """Lengths whose percentages are of the font size."""
 # Lengths that are not handed down, but may be asked for with `inherit`.
 _WITH_UNITS = frozenset({"x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "transform", "transform-origin"})
+_NEVER_NEGATIVE = frozenset({"width", "height", "r", "rx", "ry", "stroke-width"})
 _OLD_WRITING_MODES = {
     "lr": "horizontal-tb",
     "lr-tb": "horizontal-tb",
@@ -100,8 +102,10 @@ class Style:
         return INITIAL[name] if value is None else value
 
     def length(self, name: str, axis: Axis) -> float | None:
-        """A property that is a length, in user units; None for `auto` and the like."""
-        return self._units.length(self[name], axis)
+        """A property that is a length, in user units, what is calculated for a size at least zero; None for `auto` and
+        the like."""
+        length = self._units.length(self[name], axis)
+        return max(length, 0.0) if length is not None and name in _NEVER_NEGATIVE else length
 
     def in_units(self, text: str, axis: Axis) -> float | None:
         """Any length or percentage by the units of this place; None where it is none."""
@@ -260,7 +264,8 @@ def _substituted(name: str, entry: Declared, variables: Mapping[str, str]) -> st
         return None
     if entry.shorthand and text.lower() not in WIDE_KEYWORDS:
         return SHORTHANDS[entry.shorthand][1](text).get(name)
-    return valid(name, text, is_attribute=entry.layer == ATTRIBUTE_LAYER)
+    is_quirky = entry.layer == STYLE_LAYER and name in UNITLESS_IN_STYLE
+    return valid(name, text, is_attribute=is_quirky or entry.layer == ATTRIBUTE_LAYER)
 
 
 def _font_size(value: str, above: Units) -> float:
@@ -281,7 +286,15 @@ def _reckoned(name: str, value: str, parent: Style, units: Units) -> str:
         return _OLD_WRITING_MODES.get(value, value)
     if name == "font-weight":
         return _weight(value, parent)
+    if name == "stroke-dasharray" and "(" in value:
+        return _plain_lengths(value, units)
     return units.without_font(value, name in _OF_FONT)
+
+
+def _plain_lengths(value: str, units: Units) -> str:
+    """Each in px, so that blanks stand between lengths alone."""
+    found = [units.length(text_of([token]), "diagonal") for token in component_values(value)]
+    return " ".join(f"{max(length or 0.0, 0.0):.10g}px" for length in found)
 
 
 def _weight(value: str, parent: Style) -> str:

@@ -35,6 +35,11 @@ def is_comma(token: Node) -> bool:
     return bool(token.type == "literal" and token.value == ",")
 
 
+def is_word(token: Node, word: str) -> bool:
+    """Whether it is a keyword, in any case of letters."""
+    return bool(token.type == "ident" and token.lower_value == word)
+
+
 def text_of(tokens: Iterable[Node]) -> str:
     """Written out, without comments and the blanks around."""
     return str(tinycss2.serialize([token for token in tokens if token.type != "comment"])).strip()

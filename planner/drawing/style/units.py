@@ -12,6 +12,8 @@ from planner.drawing.style.calc import Kind, NotMathematics, Quantity, evaluate
 
 Axis = Literal["x", "y", "diagonal"]
 MEDIUM_FONT_PX = 16.0
+_LARGEST_PX = 2.0**25
+"""What browsers take lengths beyond it for."""
 _PX = {"px": 1.0, "cm": 96.0 / 2.54, "mm": 96.0 / 25.4, "q": 96.0 / 101.6, "in": 96.0, "pt": 4.0 / 3.0, "pc": 16.0}
 _DEGREES = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / math.pi, "turn": 360.0}
 _EM = {"em": 1.0, "ic": 1.0, "ch": 0.636, "cap": 0.729}
@@ -49,12 +51,12 @@ class Units:
         """A length, a percentage or an expression; a plain number is in user units. None where it is none of these."""
         match = PLAIN_LENGTH.fullmatch(text)
         if match and not match[2]:
-            return float(match[1])
+            return _bounded(float(match[1]))
         quantity = self.quantity(text, axis)
-        return quantity.value if quantity and quantity.kind in ("length", "number") else None
+        return _bounded(quantity.value) if quantity and quantity.kind in ("length", "number") else None
 
     def quantity(self, text: str, axis: Axis) -> Quantity | None:
-        """Anything with a unit, or a plain number; None where it is neither, or not finite."""
+        """Anything with a unit, or a plain number; None where it is neither."""
         try:
             match = PLAIN_LENGTH.fullmatch(text)
             if match:
@@ -65,7 +67,7 @@ class Units:
                 return None
         except NotMathematics:
             return None
-        return found if math.isfinite(found.value) else None
+        return None if math.isnan(found.value) else found
 
     def without_font(self, text: str, is_percentage_of_font: bool = False) -> str:
         """The same with all that depends on the font in px, to be handed down to where the font may be another."""
@@ -119,6 +121,10 @@ class Units:
 def is_length_unit(unit: str) -> bool:
     """Whether it is a unit of length, in lower case."""
     return unit in _PX or _is_of_font(unit) or _plain(unit) in _OF_PAGE
+
+
+def _bounded(length: float) -> float:
+    return min(max(length, -_LARGEST_PX), _LARGEST_PX)
 
 
 def _is_of_font(unit: str) -> bool:
