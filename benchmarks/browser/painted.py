@@ -132,7 +132,9 @@ class _Reader:
             lines = self._polylines(segment, pdfium.FPDFClipPath_CountPathSegments(path, index), affine)
             key = b"".join(line.tobytes() for line in lines)
             if key not in self._clips:
-                self._clips[key] = _union(lines).buffer(_ON_THE_EDGE_PX, join_style="mitre")
+                self._clips[key] = _union(lines)
+                if len(lines) == 1 and len(lines[0]) <= 5:  # a page, a viewport, a marker or a tile
+                    self._clips[key] = self._clips[key].buffer(_ON_THE_EDGE_PX, join_style="mitre")
             clip = self._clips[key] if clip is None else clip.intersection(self._clips[key])
         return clip
 
