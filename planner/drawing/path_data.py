@@ -214,8 +214,6 @@ class _Reader:
         self._is_lone = False
 
     def _close(self) -> None:
-        if self._curves.is_closed[-1]:
-            return
         self._is_lone = False
         reach = abs(self._start_x) + abs(self._start_y) + abs(self._x) + abs(self._y)
         if self._curves.starts[-1] < len(self._curves.is_line) and (

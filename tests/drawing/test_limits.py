@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from planner.drawing import flatten, normalised, rewrite
+from planner.drawing import flatten
 from planner.drawing.svg import read_drawing
 from planner.errors import DrawingError, PlanError
 

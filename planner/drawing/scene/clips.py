@@ -51,11 +51,19 @@ class Clips:
         found: list[BaseGeometry] = []
         for clip in clips:
             if clip not in self._known:
-                self._known[clip] = (
-                    (window_region(clip),) if isinstance(clip, Window) else tuple(self._of_element(clip))
-                )
+                self._known[clip] = (window_region(clip),) if isinstance(clip, Window) else self._checked(clip)
             found.extend(self._known[clip])
         return tuple(found)
+
+    def _checked(self, clipped: Clipped) -> tuple[BaseGeometry, ...]:
+        """Coordinates beyond all measure can be too much for geometry: what they clip is drawn whole, and counted."""
+        from shapely.errors import ShapelyError
+
+        try:
+            return tuple(self._of_element(clipped))
+        except ShapelyError:
+            self._tree.work.skipped["clip path that cannot be worked out"] += 1
+            return ()
 
     def _of_element(self, clipped: Clipped) -> Iterable[BaseGeometry]:
         style = clipped.style

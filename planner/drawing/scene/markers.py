@@ -17,7 +17,6 @@ from planner.drawing.transforms import IDENTITY, parse_angle, scaling, translati
 from planner.drawing.xml_tree import Element
 
 Vector = tuple[float, float]
-_SAME_ANGLE_DEG = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,22 +42,29 @@ class _Corner:
         if self.coming is None or self.going is None:
             return _angle_deg(self.going or self.coming or (0.0, 0.0))
         first, second = _angle_deg(self.coming), _angle_deg(self.going)
-        if abs(abs(first - second) - 180.0) < _SAME_ANGLE_DEG:  # straight back: no side is between the two
-            return first
-        if abs(first - second) > 180.0:
-            first += 360.0
-        return (first + second) / 2.0
+        # Straight back it turns to the left.
+        turn = (second - first + 180.0) % 360.0 - 180.0
+        return first + turn / 2.0
 
 
 def vertices(subpaths: Sequence[Subpath]) -> list[Vertex]:
     """All vertices in order: the first has the start marker, the last the end marker, the others the middle ones, the
     moves between subpaths included."""
-    corners = [corner for subpath in subpaths for corner in _corners(subpath)]
+    corners: list[_Corner] = []
+    for before, subpath in zip((None, *subpaths[:-1]), subpaths, strict=True):
+        found = _corners(subpath)
+        corners.extend(found[1:] if before is not None and _goes_on(before, subpath) else found)
     last = len(corners) - 1
     return [
         Vertex(*corner.at, corner.angle_deg, "marker-end" if at == last else "marker-mid" if at else "marker-start")
         for at, corner in enumerate(corners)
     ]
+
+
+def _goes_on(before: Subpath, subpath: Subpath) -> bool:
+    """Whether a subpath begins without a move of its own, after the one before was closed."""
+    is_same = bool(np.array_equal(before.beziers[0, 0], subpath.beziers[0, 0]))
+    return before.is_closed and is_same and bool(subpath.is_vertex.any())
 
 
 def _corners(subpath: Subpath) -> list[_Corner]:

@@ -91,7 +91,10 @@ class Painter:
                 self._tree.work.skipped["path with unreadable data"] += 1
         outline = outline_of(leaf.element, leaf.style)
         self._count(outline)
-        return outline
+        usable = [path for path in outline if _is_usable(path)]
+        if len(usable) < len(outline):
+            self._tree.work.skipped["path with unusable numbers"] += len(outline) - len(usable)
+        return usable
 
     def _outline(self, leaf: Leaf, outline: Sequence[Subpath], whole: Sequence[Subpath]) -> None:
         """An outline with fill and stroke; `whole` is what the box of its paints is around."""
@@ -101,6 +104,8 @@ class Painter:
             fill = paint_of(self._tree, "fill", style, place, lambda: box_of_subpaths(whole))
         stroke = self._stroke(leaf, whole)
         if fill is None and stroke is None:
+            return
+        if not self._can_be_seen(place):
             return
         clips = self._clips.regions(place.clips)
         drawn = [without_still_curves(path) for path in outline if path.is_vertex.any()]
@@ -129,16 +134,22 @@ class Painter:
 
     def _moved(self, paths: Iterable[Subpath], to_user: FloatArray) -> dict[Subpath, Subpath]:
         """Each path in user units, those left out that end up nowhere."""
-        moved: dict[Subpath, Subpath] = {}
-        if _scale(to_user) == 0.0:
-            return moved
+        moved = {}
         for path in dict.fromkeys(paths):
             there = path if to_user is IDENTITY else path.moved(to_user)
-            if max(there.beziers.max(), -there.beziers.min()) < LARGEST_COORDINATE:
+            if _is_usable(there):
                 moved[path] = there
             else:
                 self._tree.work.skipped["path with unusable numbers"] += 1
         return moved
+
+    def _can_be_seen(self, place: Place) -> bool:
+        """Whether transforms neither squeeze everything to a line nor carry it off."""
+        scale = _scale(place.to_user)
+        if not scale < LARGEST_COORDINATE:
+            self._tree.work.skipped["path with unusable numbers"] += 1
+            return False
+        return scale > 0.0
 
     def _stroke(self, leaf: Leaf, whole: Sequence[Subpath]) -> Stroke | None:
         width = leaf.style.length("stroke-width", "diagonal") or 0.0
@@ -238,6 +249,8 @@ class Painter:
         paint = stroke.paint if fill is None and stroke is not None else fill
         if paint is None:
             return
+        if not self._can_be_seen(leaf.place):
+            return
         moved = tuple(self._moved(lines, leaf.place.to_user).values())
         pen = Stroke(paint if isinstance(paint, Paint) else _BLACK, 0.0)
         clips = self._clips.regions(leaf.place.clips)
@@ -245,6 +258,10 @@ class Painter:
 
     def _count(self, paths: Sequence[Subpath]) -> None:
         self._tree.work.subpaths(len(paths), sum(len(path.beziers) for path in paths))
+
+
+def _is_usable(path: Subpath) -> bool:
+    return bool(max(path.beziers.max(), -path.beziers.min()) < LARGEST_COORDINATE)
 
 
 def _is_even_odd(leaf: Leaf) -> bool:

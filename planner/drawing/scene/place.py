@@ -22,18 +22,20 @@ NESTING_LIMIT = 12
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Inside:
-    """The elements that something is shown inside of, through `use` and other references as well, innermost first."""
+    """The elements that something is shown inside of, through `use` and other references as well, innermost first.
+    is_resource: shown only by reference, such as a marker, in a tree of its own."""
 
     element: Element
     outer: Inside | None
     depth: int
+    is_resource: bool = False
 
-    def holds(self, element: Element) -> bool:
+    def holds(self, element: Element, in_this_tree: bool = False) -> bool:
         at: Inside | None = self
         while at is not None:
             if at.element is element:
                 return True
-            at = at.outer
+            at = None if in_this_tree and at.is_resource else at.outer
         return False
 
 
@@ -94,7 +96,7 @@ def resource_place(
         viewport,
         layer=place.layer,
         has_layer=True,
-        inside=Inside(element, place.inside, depth),
+        inside=Inside(element, place.inside, depth, is_resource=True),
         nesting=place.nesting + 1,
     )
 

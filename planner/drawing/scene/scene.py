@@ -10,6 +10,7 @@ import numpy as np
 from planner.arrays import frozen
 from planner.drawing.options import ReadingOptions
 from planner.drawing.scene.boxes import box_of_subpaths
+from planner.drawing.scene.expansion import check_expansion
 from planner.drawing.scene.page import FALLBACK, OwnSize, Page, own_size, page_of, size_for_percentages
 from planner.drawing.scene.painter import Painter
 from planner.drawing.scene.place import Clipped, Inside, Leaf, Place, Work
@@ -27,6 +28,7 @@ MM_PER_INCH = 25.4
 def read_scene(document: Document, options: ReadingOptions) -> Scene:
     """Everything that the document shows, on its page. Errors: DrawingError for a page of no size, and for more than
     the limits allow."""
+    check_expansion(document)
     root, styles, work = document.root, Styles(document), Work(document.source)
     work.skipped.update(document.skipped)
     work.skipped.update(styles.skipped)

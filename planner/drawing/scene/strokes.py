@@ -24,10 +24,9 @@ def without_still_curves(subpath: Subpath) -> Subpath:
 
 def closed(subpath: Subpath) -> Subpath:
     """The same with the edge that a fill gives it."""
-    start, end = subpath.beziers[0, 0], subpath.beziers[-1, 3]
-    if subpath.is_closed or np.array_equal(start, end):
+    if not _is_open(subpath):
         return subpath
-    edge = polyline(np.stack((end, start)))
+    edge = polyline(np.stack((subpath.beziers[-1, 3], subpath.beziers[0, 0])))
     return Subpath(
         frozen(np.concatenate((subpath.beziers, edge.beziers))), True, np.append(subpath.is_vertex, edge.is_vertex)
     )
@@ -41,7 +40,8 @@ def stroke_lines(
     outline = [path for path in outline if not path.is_dot or style["stroke-linecap"] != "butt"]
     array = dash_array(style)
     if not array:
-        return [closed(path) if fills else path for path, fills in zip(outline, _fill(outline, has_fill), strict=True)]
+        are_fills = _are_open_fills(outline, has_fill)
+        return [closed(path) if is_fill else path for path, is_fill in zip(outline, are_fills, strict=True)]
     from planner.drawing.cut.dash import dashed
 
     offset = style.length("stroke-dashoffset", "diagonal") or 0.0
@@ -54,8 +54,8 @@ def stroke_lines(
         lines = dashed(outline, array, offset, path_length)
     edges = [
         polyline(np.stack((path.beziers[-1, 3], path.beziers[0, 0])))
-        for path, fills in zip(outline, _fill(outline, has_fill), strict=True)
-        if fills and closed(path) is not path
+        for path, is_fill in zip(outline, _are_open_fills(outline, has_fill), strict=True)
+        if is_fill
     ]
     return [*lines, *edges]
 
@@ -69,14 +69,28 @@ def dash_array(style: Style) -> list[float]:
     return [length for length in lengths if length is not None] if None not in lengths else []
 
 
-def _fill(outline: Sequence[Subpath], has_fill: bool) -> Sequence[bool]:
-    """Whether the fill of each subpath can be seen."""
-    if not has_fill or not outline:
-        return [False] * len(outline)
+def _are_open_fills(outline: Sequence[Subpath], has_fill: bool) -> Sequence[bool]:
+    """Whether the fill of each subpath has an edge that the subpath has not, and covers anything."""
+    asked = [has_fill and _is_open(path) and not _is_line(path) for path in outline]
+    if not any(asked):
+        return asked
     from planner.drawing.cut.area import have_area
 
-    found: Sequence[bool] = have_area(outline).tolist()
-    return found
+    found = iter(have_area([path for path, is_asked in zip(outline, asked, strict=True) if is_asked]).tolist())
+    return [is_asked and next(found) for is_asked in asked]
+
+
+def _is_open(path: Subpath) -> bool:
+    return not path.is_closed and path.beziers[0, 0].tolist() != path.beziers[-1, 3].tolist()
+
+
+def _is_line(path: Subpath) -> bool:
+    """Whether it is one straight line as path data make them."""
+    if len(path.beziers) > 1:
+        return False
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = path.beziers[0].tolist()
+    across, down = (x3 - x0) / 3.0, (y3 - y0) / 3.0
+    return (x1, y1, x2, y2) == (x0 + across, y0 + down, x3 - across, y3 - down)
 
 
 def _number(text: str | None) -> float | None:

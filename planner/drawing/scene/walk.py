@@ -134,7 +134,7 @@ def _used(tree: Tree, use: Element, style: Style, inner: Place) -> Iterator[tupl
         if reference and not reference.startswith("#"):
             tree.work.skipped["external reference"] += 1
         return
-    if inner.inside is not None and inner.inside.holds(target):
+    if inner.inside is not None and inner.inside.holds(target, in_this_tree=True):
         tree.work.skipped["reference to itself"] += 1
         return
     x, y = style.length("x", "x") or 0.0, style.length("y", "y") or 0.0
