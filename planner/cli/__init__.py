@@ -101,6 +101,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.predict import predict
 
             return predict(rest)
+        case "fonts":
+            from planner.cli.fonts import fonts
+
+            return fonts(rest)
         case "jog":
             from planner.cli.jog import jog
 

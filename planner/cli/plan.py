@@ -38,6 +38,7 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan check traj.csv       an independent check of a trajectory
   plan plot traj.csv -o F   pictures of a trajectory
   plan compare DRAWING.svg  the same points by every method of inverse kinematics
+  plan fonts                the single-line faces that text is written in
   plan measure PHOTO        where the marks of a calibration sheet came
   plan arm [NAME]           list the arms, or describe one"""
 

@@ -12,7 +12,7 @@ from planner.arrays import FloatArray
 from planner.drawing.options import ReadingOptions
 from planner.drawing.scene.boxes import box_of_subpaths, moved_box, union
 from planner.drawing.scene.conditions import fitting_child, is_met
-from planner.drawing.scene.lettering import glyphs_of
+from planner.drawing.scene.lettering import box_of_text
 from planner.drawing.scene.place import Clipped, Inside, Leaf, Place, Window, Work
 from planner.drawing.scene.references import by_href, href
 from planner.drawing.scene.viewport import fitted, parse_view_box
@@ -64,6 +64,8 @@ def leaves(tree: Tree, elements: Iterable[Element], place: Place) -> Iterator[Le
         element, around = pending.pop()
         if element.tag not in _SHOWN or not is_met(element):
             _count_animation(tree, element)
+            if element.tag == "flowRoot":  # text of a draft of SVG 1.2, which Inkscape wrote and no browser shows
+                tree.work.skipped["flowRoot"] += 1
             continue
         tree.work.element(element, around.inside)
         style = tree.styles.of(element, around.style, around.viewport)
@@ -97,7 +99,7 @@ def leaf_box(tree: Tree, leaf: Leaf) -> Box | None:
     if leaf.element.tag in SHAPES:
         return box_of_subpaths(outline_of(leaf.element, leaf.style))
     if leaf.element.tag == "text":
-        return box_of_subpaths([path for glyphs in glyphs_of(tree, leaf) for path in glyphs.subpaths])
+        return box_of_text(tree, leaf)
     x, y = leaf.style.length("x", "x") or 0.0, leaf.style.length("y", "y") or 0.0
     width, height = leaf.style.length("width", "x") or 0.0, leaf.style.length("height", "y") or 0.0
     return (x, y, width, height) if width > 0.0 and height > 0.0 else None

@@ -85,8 +85,11 @@ def visual_order(found: Sequence[int]) -> list[int]:
     """Indices of characters from left to right (rule L2)."""
     order = list(range(len(found)))
     for level in range(max(found, default=0), 0, -1):
-        reordered: list[int] = []
-        for is_reversed, run in groupby(order, lambda index: found[index] >= level):
-            reordered += list(run)[::-1] if is_reversed else list(run)
-        order = reordered
+        start = 0
+        while start < len(order):
+            stop = start
+            while stop < len(order) and found[order[stop]] >= level:
+                stop += 1
+            order[start:stop] = order[start:stop][::-1]
+            start = max(stop, start) + 1
     return order

@@ -5,15 +5,18 @@ SVG 2, section 11.5, calls these the addressable characters: the lists of `x`, `
 
 from __future__ import annotations
 
+import math
 import re
 import unicodedata
 from dataclasses import dataclass, field
+from functools import cached_property
 
-from planner.drawing.style.style import Axis, Style
+from planner.drawing.style.style import Style
+from planner.drawing.style.units import Axis
 from planner.drawing.text.context import TextContext
 from planner.drawing.text.families import Request, split_families
+from planner.drawing.text.fonts import USUAL, Font, Metrics, ShapedGlyph
 from planner.drawing.text.on_path import TextPath, text_path
-from planner.drawing.text.fonts import ShapedGlyph, Font
 from planner.drawing.xml_tree import Element
 from planner.errors import DrawingError
 
@@ -23,10 +26,12 @@ _WEIGHTS = {"normal": 400.0, "bold": 700.0, "bolder": 700.0, "lighter": 300.0}
 SMALL_CAPS = 0.7
 """Size of capitals that stand for small letters."""
 
+_LISTS: dict[str, Axis] = {"x": "x", "y": "y", "dx": "x", "dy": "y"}
 
-@dataclass(eq=False, slots=True)
+
+@dataclass(eq=False)
 class Span:
-    """An element of text with its computed style: characters first to stop, not with it, are in it or in a span in it."""
+    """An element of text with its computed style: characters first to stop, not with it, are in it or further in."""
 
     element: Element
     style: Style
@@ -36,13 +41,21 @@ class Span:
     first: int
     stop: int = 0
 
+    @cached_property
+    def letter_spacing(self) -> float:
+        return self.style.length("letter-spacing", "x") or 0.0
+
+    @cached_property
+    def word_spacing(self) -> float:
+        return self.style.length("word-spacing", "x") or 0.0
+
     @property
     def is_rtl(self) -> bool:
         return self.style["direction"] == "rtl"
 
     @property
     def is_small_caps(self) -> bool:
-        return "small-caps" in self.style["font-variant"]
+        return "small-caps" in (self.style["font-variant"], self.style["font-variant-caps"])
 
 
 @dataclass(eq=False, slots=True)
@@ -71,6 +84,11 @@ class Character:
     advance: float = 0.0
     stretch: float = 1.0
     rise: float = 0.0
+
+    @property
+    def metrics(self) -> Metrics:
+        """Of its font, or usual ones where none has it."""
+        return USUAL if self.font is None else self.font.metrics
 
 
 @dataclass(eq=False, slots=True)
@@ -179,7 +197,7 @@ def _place(text: Text, context: TextContext) -> None:
         if span.element.tag not in ("text", "tspan"):
             continue
         characters = text.characters[span.first : span.stop]
-        for name, axis in (("x", "x"), ("y", "y"), ("dx", "x"), ("dy", "y")):
+        for name, axis in _LISTS.items():
             is_across = name == ("x" if text.is_vertical else "y")
             for character, value in zip(characters, _lengths(span, name, axis), strict=False):
                 if not (is_across and character.span.path is not None):
@@ -191,18 +209,18 @@ def _place(text: Text, context: TextContext) -> None:
 
 
 def _lengths(span: Span, name: str, axis: Axis) -> list[float]:
-    """A list of lengths; empty where any of it is none, as browsers have it."""
-    values = [
-        span.style.in_units(word, axis) for word in span.element.attributes.get(name, "").replace(",", " ").split()
-    ]
+    """A list of lengths; empty where any of them is none, as browsers have it."""
+    words = span.element.attributes.get(name, "").replace(",", " ").split()
+    values = [span.style.in_units(word, axis) for word in words]
     return [] if None in values else [value for value in values if value is not None]
 
 
 def _numbers(text: str) -> list[float]:
     try:
-        return [float(word) for word in text.replace(",", " ").split()]
+        values = [float(word) for word in text.replace(",", " ").split()]
     except ValueError:
         return []
+    return values if all(map(math.isfinite, values)) else []
 
 
 def _request(style: Style) -> Request:

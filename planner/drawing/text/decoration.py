@@ -12,7 +12,6 @@ from planner.drawing.subpath import Subpath, polyline
 from planner.drawing.text.characters import Character, Text
 from planner.drawing.text.context import Glyphs, TextContext
 from planner.drawing.text.frame import frame
-from planner.drawing.xml_tree import Element
 
 THICKNESS = 0.1
 """Of a line, in em."""
@@ -39,8 +38,9 @@ class _Line:
 
 
 def decorations(text: Text, context: TextContext) -> Decorations:
-    below, above = [], []
-    for line in _lines(text, context):
+    below: list[Glyphs] = []
+    above: list[Glyphs] = []
+    for line in _lines(text):
         drawn = tuple(_drawn(text, line, is_outline=context.options.text == "outline"))
         if drawn:
             is_single = context.options.text != "outline"
@@ -48,9 +48,9 @@ def decorations(text: Text, context: TextContext) -> Decorations:
     return Decorations(below, above)
 
 
-def _lines(text: Text, context: TextContext) -> list[_Line]:
+def _lines(text: Text) -> list[_Line]:
     """Those of elements around the text, then those of its own, each where it begins."""
-    asked = [(style, 0, len(text.characters)) for style in _styles_around(text.root.element, context)]
+    asked = [(style, 0, len(text.characters)) for style in _styles_around(text.root.style)]
     asked += [(span.style, span.first, span.stop) for span in text.spans]
     return [
         _Line(kind, style, first, stop)
@@ -60,26 +60,18 @@ def _lines(text: Text, context: TextContext) -> list[_Line]:
     ]
 
 
-def _styles_around(element: Element, context: TextContext) -> list[Style]:
-    """Styles of the elements around a text that ask for decorations of their own, the outermost first."""
+def _styles_around(style: Style) -> list[Style]:
+    """Styles of what a text is shown under, the outermost first."""
     around = []
-    parent = element.parent
-    while parent is not None:
-        around.append(parent)
-        parent = parent.parent
-    if not any("text-decoration" in " ".join((*one.attributes, one.attributes.get("style", ""))) for one in around):
-        return []
-    styles = []
-    style = context.styles.root(context.viewport)
-    for one in reversed(around):
-        style = context.styles.of(one, style, context.viewport)
-        styles.append(style)
-    return styles
+    while (above := style.parent) is not None:
+        around.append(above)
+        style = above
+    return around[::-1]
 
 
 def _drawn(text: Text, line: _Line, *, is_outline: bool) -> list[Subpath]:
     """The line over each character, joined where characters stand in a row."""
-    pieces: list[FloatArray] = []
+    pieces: list[tuple[FloatArray, float]] = []
     for character in text.characters[line.first : line.stop]:
         if character.is_middle or character.span.style["visibility"] != "visible" or character.advance == 0.0:
             continue
@@ -91,12 +83,11 @@ def _drawn(text: Text, line: _Line, *, is_outline: bool) -> list[Subpath]:
         if character.is_upright:
             ends = np.array([[y, 0.0], [y, -character.advance / character.stretch]])
         piece = ends @ placed[:, :2].T + placed[:, 2]
-        if pieces and _is_continued(pieces[-1], piece, character):
-            pieces[-1] = np.stack((pieces[-1][0], piece[1]))
+        if pieces and pieces[-1][1] == character.size and _is_continued(pieces[-1][0], piece, character):
+            pieces[-1] = np.stack((pieces[-1][0][0], piece[1])), character.size
         else:
-            pieces.append(piece)
-    width = THICKNESS * line.style.font_size
-    return [_box(piece, width) if is_outline else polyline(piece) for piece in pieces]
+            pieces.append((piece, character.size))
+    return [_box(piece, THICKNESS * size) if is_outline else polyline(piece) for piece, size in pieces]
 
 
 def _is_continued(before: FloatArray, piece: FloatArray, character: Character) -> bool:
@@ -109,7 +100,7 @@ def _is_continued(before: FloatArray, piece: FloatArray, character: Character) -
 
 def _height(kind: str, character: Character) -> float:
     """Of the middle of a line above the alphabetic baseline."""
-    ascent = character.font.metrics.ascent if character.font is not None else 0.93
+    ascent = character.metrics.ascent
     if kind == "underline":
         return -THICKNESS * character.size
     if kind == "overline":

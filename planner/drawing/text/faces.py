@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
 
@@ -42,14 +42,15 @@ class Face:
     x_height: float
     is_smooth: bool
     lines: dict[str, str]
+    _read: dict[str, SingleLine] = field(default_factory=dict)
 
     def glyph(self, character: str) -> SingleLine:
         """Errors: KeyError where the face lacks it."""
-        advance, _, strokes = self.lines[character].partition(" ")
-        return SingleLine(
-            float(advance),
-            tuple(self._subpath(kind, numbers) for kind, numbers in re.findall(r"([LC])([-\d, ]+)", strokes)),
-        )
+        if character not in self._read:
+            advance, _, strokes = self.lines[character].partition(" ")
+            subpaths = [self._subpath(kind, numbers) for kind, numbers in re.findall(r"([LC])([-\d, ]+)", strokes)]
+            self._read[character] = SingleLine(float(advance), tuple(subpaths))
+        return self._read[character]
 
     def _subpath(self, kind: str, numbers: str) -> Subpath:
         points = np.array([float(number) for number in numbers.replace(",", " ").split()]).reshape(-1, 2)

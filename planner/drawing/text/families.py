@@ -29,11 +29,11 @@ _GENERIC: dict[str, Kind] = {
     "math": "serif",
 }
 _HINTS: tuple[tuple[Kind, str], ...] = (
-    ("mono", r"mono|courier|consol|\bcode\b|typewriter|terminal|fixed|menlo|inconsolata|lucida console|ocr"),
+    ("mono", r"mono|courier|consol|cascadia|\bcode\b|typewriter|terminal|fixed|menlo|inconsolata|lucida console|ocr"),
     (
         "script",
         r"script|hand|brush|cursive|chancery|comic|allura|zapfino|yellowtail|pacifico|lobster|calligra|italianno"
-        r"|tangerine|caveat|signature|edwardian|mistral|bradley|ink free",
+        r"|tangerine|caveat|signature|edwardian|mistral|bradley|ink free|virgil|excalifont|xkcd|humor",
     ),
     ("sans", r"sans|grotesk|grotesque|gothic|\bui\b"),
     (

@@ -37,11 +37,10 @@ def frame(character: Character, *, is_vertical: bool, is_turned: bool = True) ->
 def _vertical(character: Character, turn: float) -> FloatArray:
     """Chromium turns a character of a vertical line about the point that would be its origin if the line were not."""
     x, y = character.rise - character.v, character.u
-    metrics = character.font.metrics if character.font is not None else None
-    ascent, descent = (metrics.ascent, metrics.descent) if metrics is not None else (0.93, 0.24)
-    centre = x - descent * character.size, y + ascent * character.size
+    metrics = character.metrics
+    centre = x - metrics.descent * character.size, y + metrics.ascent * character.size
     if character.is_upright:
-        x += (ascent - descent) / 2.0 * character.size
+        x += (metrics.ascent - metrics.descent) / 2.0 * character.size
     if turn:
         away = x - centre[0], y - centre[1]
         x = centre[0] + math.cos(turn) * away[0] - math.sin(turn) * away[1]
@@ -54,3 +53,14 @@ def _vertical(character: Character, turn: float) -> FloatArray:
 def _affine(angle: float, x: float, y: float, along: float, up: float) -> FloatArray:
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.array([[cosine * along, sine * up, x], [sine * along, -cosine * up, y]])
+
+
+def cell(character: Character) -> FloatArray:
+    """Corners (4, 2), in the frame of a character, of the room that it takes."""
+    metrics, size = character.metrics, character.size
+    room = character.advance / character.stretch
+    if character.is_upright:
+        half = (metrics.ascent + metrics.descent) / 2.0 * size
+        return np.array([[-half, 0.0], [half, 0.0], [half, -room], [-half, -room]])
+    low, high = -metrics.descent * size, metrics.ascent * size
+    return np.array([[0.0, low], [room, low], [room, high], [0.0, high]])

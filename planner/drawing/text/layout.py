@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from planner.drawing.options import ReadingOptions
 from planner.drawing.text.characters import Character, Span, Text
 from planner.drawing.text.fonts import Metrics
+from planner.drawing.text.row import Row
 from planner.drawing.text.shaping import shape
-
-_PLAIN = Metrics(0.93, 0.24, 0.55, 0.73)
-"""Heights where there is no font."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,8 +30,12 @@ def lay_out(text: Text, options: ReadingOptions) -> None:
     if not text.characters:
         return
     order = shape(text, options)
+    known: dict[tuple[int, int], float] = {}
     for character in text.characters:
-        character.rise = _rise(character, is_vertical=text.is_vertical)
+        key = id(character.span), id(character.font)
+        if key not in known:
+            known[key] = _rise(character, is_vertical=text.is_vertical)
+        character.rise = known[key]
     _move_by_offsets(text)
     _adjust_lengths(text, order)
     chunks = _chunks(text)
@@ -43,7 +47,7 @@ def lay_out(text: Text, options: ReadingOptions) -> None:
 
 def _rise(character: Character, *, is_vertical: bool) -> float:
     """Of the alphabetic baseline above the line, by the baselines and shifts that its spans ask for."""
-    metrics = character.font.metrics if character.font is not None else _PLAIN
+    metrics = character.metrics
     size = character.span.style.font_size
     baseline = "central" if is_vertical else "alphabetic"
     shift = 0.0
@@ -107,51 +111,38 @@ def _in_line(text: Text, x: float, y: float) -> tuple[float, float]:
 
 def _adjust_lengths(text: Text, order: list[int]) -> None:
     """By `textLength`, inner elements first."""
-    resolved: list[Span] = []
-    for span in reversed(text.spans):
-        length = span.style.in_units(span.element.attributes.get("textLength", "").strip(), "x")
-        if length is None or length <= 0.0 or span.stop <= span.first or span.element.tag == "a":
-            continue
-        inner = [one for one in resolved if span.first <= one.first and one.stop <= span.stop]
-        outermost = [
-            one
-            for one in inner
-            if not any(other is not one and other.first <= one.first < other.stop for other in inner)
-        ]
-        _adjust(text, span, length, outermost, order)
-        resolved.append(span)
-
-
-def _adjust(text: Text, span: Span, length: float, inner: list[Span], order: list[int]) -> None:
     characters = text.characters
-    own = characters[span.first : span.stop]
-    left = min(min(one.u, one.u + one.advance) for one in own)
-    right = max(max(one.u, one.u + one.advance) for one in own)
-    if span.element.attributes.get("lengthAdjust") == "spacingAndGlyphs":
-        factor = length / (right - left) if right > left else 1.0
-        for one in own:
-            one.u = left + (one.u - left) * factor
-            one.advance *= factor
-            one.stretch *= factor
-        begin = next(place for place, index in enumerate(order) if span.first <= index < span.stop)
-        for index in order[begin:]:
-            if not span.first <= index < span.stop:
-                characters[index].u += length - (right - left)
+    asked = [(span, length) for span in text.spans if (length := _text_length(span)) is not None]
+    if not asked:
         return
-    within = {index for one in inner for index in range(one.first, one.stop)}
-    counted = [
-        index for index in range(span.first, span.stop) if not characters[index].is_middle and index not in within
-    ]
-    n = len(counted) + len(inner) - 1
-    if n <= 0:
-        return
-    step = (length - (right - left)) / n
-    steps = {*counted, *(one.first for one in inner)}
-    shift = 0.0
-    for index in order:
-        characters[index].u += shift
-        if index in steps:
-            shift += step
+    row = Row(
+        np.array([one.u for one in characters]),
+        np.array([one.advance for one in characters]),
+        np.array([not one.is_middle for one in characters]),
+        np.array(order),
+    )
+    resolved: list[Span] = []  # of which none is in another
+    for span, length in reversed(asked):
+        inner = []
+        while resolved and resolved[-1].stop <= span.stop:
+            inner.append(resolved.pop())
+        resolved.append(span)
+        own = slice(span.first, span.stop)
+        if span.element.attributes.get("lengthAdjust") == "spacingAndGlyphs":
+            factor = row.stretch(own, length)
+            for one in characters[own]:
+                one.stretch *= factor
+        else:
+            row.space_out(own, [slice(one.first, one.stop) for one in inner], length)
+    for one, u, advance in zip(characters, row.u.tolist(), row.advance.tolist(), strict=True):
+        one.u, one.advance = u, advance
+
+
+def _text_length(span: Span) -> float | None:
+    if span.stop <= span.first or span.element.tag == "a":
+        return None
+    length = span.style.in_units(span.element.attributes.get("textLength", ""), "x")
+    return length if length is not None and length > 0.0 else None
 
 
 def _chunks(text: Text) -> list[Chunk]:

@@ -63,18 +63,21 @@ def text_path(element: Element, style: Style, context: TextContext) -> TextPath:
 
 
 def _start(element: Element, style: Style, target: Element, total: float) -> float:
-    said = element.attributes.get("startOffset", "0").strip()
+    said = element.attributes.get("startOffset", "").strip()
+    own = _number(target.attributes.get("pathLength", ""))
     if said.endswith("%"):
-        try:
-            return float(said[:-1]) / 100.0 * total
-        except ValueError:
-            return 0.0
+        return _number(said[:-1]) / 100.0 * total
     offset = style.in_units(said, "diagonal") or 0.0
-    try:
-        own = float(target.attributes.get("pathLength", "0"))
-    except ValueError:
-        own = 0.0
     return offset * total / own if own > 0.0 else offset
+
+
+def _number(text: str) -> float:
+    """0 where it is none."""
+    try:
+        value = float(text)
+    except ValueError:
+        return 0.0
+    return value if math.isfinite(value) else 0.0
 
 
 def measured(subpaths: list[Subpath]) -> tuple[FloatArray, FloatArray]:

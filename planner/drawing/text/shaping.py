@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from dataclasses import replace
 from itertools import groupby
 
 from planner.drawing.options import ReadingOptions
@@ -10,6 +11,9 @@ from planner.drawing.text.bidi import levels, visual_order
 from planner.drawing.text.characters import Character, Text, is_spaced
 from planner.drawing.text.families import any_font_with, font_file, fonts_for
 from planner.drawing.text.fonts import Font, ShapedGlyph
+
+_CONTEXT = 5
+"""Characters on either side that HarfBuzz looks at, to join letters."""
 
 
 def shape(text: Text, options: ReadingOptions) -> list[int]:
@@ -23,7 +27,7 @@ def shape(text: Text, options: ReadingOptions) -> list[int]:
         character.font = _font(character, options)
         character.is_upright = text.is_vertical and _is_upright(character)
     start = 0
-    for _, run in groupby(range(len(characters)), _run_key(characters, found)):
+    for _, run in groupby(range(len(characters)), _RunKey(characters, found)):
         stop = start + len(list(run))
         _shape_run(characters, content, start, stop, is_rtl=found[start] % 2 == 1, is_single=options.text == "single")
         start = stop
@@ -36,7 +40,7 @@ def shape(text: Text, options: ReadingOptions) -> list[int]:
     return order
 
 
-class _run_key:
+class _RunKey:
     """Characters that are shaped together have the same key: one font and size, one direction, one script, and none
     but the first has a place of its own."""
 
@@ -54,7 +58,7 @@ class _run_key:
                 piece += 1
             last_script = last_script if is_common else own
             path = character.span.path
-            spacing = character.span.style.length("letter-spacing", "x") or 0.0
+            spacing = character.span.letter_spacing
             self._keys.append((piece, id(character.font), character.size, level, character.is_upright, spacing))
 
     def __call__(self, index: int) -> tuple[object, ...]:
@@ -65,18 +69,19 @@ def _shape_run(
     characters: list[Character], content: str, start: int, stop: int, *, is_rtl: bool, is_single: bool
 ) -> None:
     first = characters[start]
-    letter_spacing = first.span.style.length("letter-spacing", "x") or 0.0
     if first.font is None:
         glyphs = [ShapedGlyph(index, _missing_advance(content[index]), (0.0, 0.0), 0) for index in range(start, stop)]
     else:
+        before, after = max(start - _CONTEXT, 0), stop + _CONTEXT
         glyphs = first.font.shape(
-            content,
-            start,
-            stop,
+            content[before:after],
+            start - before,
+            stop - before,
             is_rtl=is_rtl,
             is_vertical=first.is_upright,
-            has_ligatures=not is_single and letter_spacing == 0.0,
+            has_ligatures=not is_single and first.span.letter_spacing == 0.0,
         )
+        glyphs = [replace(glyph, cluster=glyph.cluster + before) for glyph in glyphs]
     clusters = {glyph.cluster for glyph in glyphs}
     for index in range(start, stop):
         character = characters[index]
@@ -86,10 +91,9 @@ def _shape_run(
     for character in characters[start:stop]:
         character.advance = sum(glyph.advance for glyph in character.glyphs) * character.size
         if not character.is_middle and is_spaced(character.text):
-            spacing = letter_spacing
+            character.advance += character.span.letter_spacing
             if character.text in " \u00a0":
-                spacing += character.span.style.length("word-spacing", "x") or 0.0
-            character.advance += spacing
+                character.advance += character.span.word_spacing
 
 
 def _font(character: Character, options: ReadingOptions) -> Font | None:

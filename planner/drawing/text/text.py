@@ -5,16 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import groupby
 
+import numpy as np
+
 from planner.drawing.style.style import Style
 from planner.drawing.subpath import Subpath
 from planner.drawing.text.characters import Character, Text, read_text
 from planner.drawing.text.context import Glyphs, TextContext
 from planner.drawing.text.decoration import decorations
 from planner.drawing.text.faces import is_shown
-from planner.drawing.text.frame import frame
+from planner.drawing.text.frame import cell, frame
 from planner.drawing.text.glyphs import outlines, single_lines
 from planner.drawing.text.layout import lay_out
 from planner.drawing.xml_tree import Element
+
+MOST_NAMED = 12
+"""Characters that are not drawn as they should be, and are counted by name."""
 
 
 def text_shapes(element: Element, style: Style, context: TextContext) -> list[Glyphs]:
@@ -24,9 +29,26 @@ def text_shapes(element: Element, style: Style, context: TextContext) -> list[Gl
     if context.options.text == "skip":
         context.skipped["text"] += any(is_shown(one.text) for one in visible)
         return []
+    with np.errstate(over="ignore", invalid="ignore"):  # who reads the drawing refuses coordinates that are too large
+        lay_out(text, context.options)
+        lines = decorations(text, context)
+        return [*lines.below, *_glyphs(text, context), *lines.above]
+
+
+def text_box(element: Element, style: Style, context: TextContext) -> tuple[float, float, float, float] | None:
+    """The box around the cells of all characters (x, y, width, height), as a browser has it; None where there are
+    none. A cell is as high as the font says that lines are. Errors: DrawingError."""
+    text = read_text(element, style, context)
     lay_out(text, context.options)
-    lines = decorations(text, context)
-    return [*lines.below, *_glyphs(text, context), *lines.above]
+    corners = [
+        cell(character) @ placed[:, :2].T + placed[:, 2]
+        for character, _ in _clusters(text.characters)
+        if (placed := frame(character, is_vertical=text.is_vertical)) is not None
+    ]
+    if not corners:
+        return None
+    low, high = np.min(corners, axis=(0, 1)), np.max(corners, axis=(0, 1))
+    return float(low[0]), float(low[1]), float(high[0] - low[0]), float(high[1] - low[1])
 
 
 def _glyphs(text: Text, context: TextContext) -> Iterator[Glyphs]:
@@ -46,17 +68,17 @@ def _pieces(text: Text, context: TextContext) -> Iterator[tuple[Character, bool,
         placed = frame(character, is_vertical=text.is_vertical)
         if placed is None:
             continue
-        if context.options.text == "single" and (drawn := single_lines(character, cluster)) is not None:
-            yield character, True, [subpath.moved(placed) for subpath in drawn]
+        if context.options.text == "single" and (drawn := single_lines(character, cluster, placed)) is not None:
+            yield character, True, drawn
             continue
-        drawn = outlines(character)
+        drawn = outlines(character, placed)
         code = f"glyph U+{ord(character.text):04X}"
         if not drawn:
-            context.skipped[code] += 1
+            _count(context, code)
             continue
         if context.options.text == "single":
-            context.skipped[f"{code} as a single line (its outline is drawn)"] += 1
-        yield character, False, [subpath.moved(placed) for subpath in drawn]
+            _count(context, f"{code} as a single line (its outline is drawn)")
+        yield character, False, drawn
 
 
 def _clusters(characters: list[Character]) -> Iterator[tuple[Character, str]]:
@@ -68,3 +90,9 @@ def _clusters(characters: list[Character]) -> Iterator[tuple[Character, str]]:
             stop += 1
         yield characters[start], "".join(one.text for one in characters[start:stop])
         start = stop
+
+
+def _count(context: TextContext, glyph: str) -> None:
+    """By name; of a long text in a script that no font has not all."""
+    named = [kind for kind in context.skipped if kind.startswith("glyph ")]
+    context.skipped[glyph if glyph in named or len(named) < MOST_NAMED else "other glyphs"] += 1

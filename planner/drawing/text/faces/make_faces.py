@@ -8,6 +8,7 @@ accents that a face lacks are composed of its own letter and the marks of NewStr
 
 from __future__ import annotations
 
+import itertools
 import re
 import sys
 import unicodedata
@@ -20,7 +21,8 @@ import numpy as np
 
 Stroke = tuple[str, np.ndarray]  # "L" with its points, or "C" with four for each curve: a + 3 n points in all
 
-LATIN = [*range(0xC0, 0x180), 0x218, 0x219, 0x21A, 0x21B]
+LATIN = [*range(0xC0, 0x123), *range(0x124, 0x180), 0x218, 0x219, 0x21A, 0x21B]
+"""What may be composed; the cedilla of a small g would run into the letter."""
 BELOW = {0x327, 0x328, 0x326}
 """Combining cedilla, ogonek and comma below."""
 
@@ -99,7 +101,7 @@ def strokes_of(path: str) -> Iterator[Stroke]:
 
 def as_curves(points: list[np.ndarray]) -> list[np.ndarray]:
     curved = points[:1]
-    for a, b in zip(points, points[1:], strict=False):
+    for a, b in itertools.pairwise(points):
         curved += [a + (b - a) / 3, b - (b - a) / 3, b]
     return curved
 
@@ -119,7 +121,7 @@ def fontobene(path: Path) -> Source:
             if line[0] not in "~@"
         ]
         width = max((float(points[:, 0].max()) for points in drawn), default=0.0)
-        strokes = [("L", points + (spacing / 2, 0.0)) for points in drawn]
+        strokes = [("L", points + np.array([spacing / 2, 0.0])) for points in drawn]
         source.glyphs[int(code, 16)] = (space or width + spacing, strokes)
     return source
 
@@ -187,6 +189,22 @@ def compose(source: Source, donor: Source) -> None:
             source.glyphs[code] = (advance, [*strokes, ("L", bar)])
 
 
+def drop_flaws(source: Source) -> None:
+    """Drops signs that reach far out of their own room, and Greek letters: the sources have capitals in their place."""
+    for code, (advance, strokes) in list(source.glyphs.items()):
+        right = max((float(points[:, 0].max()) for _, points in strokes), default=0.0)
+        is_sign = unicodedata.category(chr(code))[0] != "L"
+        if (is_sign and right > 1.15 * advance and code > 0x7F) or 0x370 <= code < 0x400:
+            del source.glyphs[code]
+
+
+def straighten(source: Source) -> None:
+    """Gives NewStroke the printed form of the letter de, in the place of the written one."""
+    advance, strokes = source.glyphs[ord("Д")]
+    small = source.x_height / source.cap_height
+    source.glyphs[ord("д")] = (advance * small, [(kind, points * small) for kind, points in strokes])
+
+
 def write(source: Source, path: Path, name: str, licence: str, is_smooth: bool, scale: float) -> None:
     lines = [
         f"# name: {name}",
@@ -208,7 +226,9 @@ def main() -> None:
     folder = Path(__file__).parent
     relief, nixish, allure = (svg_font(Path(name)) for name in sys.argv[1:4])
     newstroke = fontobene(Path(sys.argv[4]))
+    straighten(newstroke)
     for face in (relief, nixish, allure):
+        drop_flaws(face)
         compose(face, newstroke)
     write(relief, folder / "relief.txt", "Relief SingleLine", "SIL OFL 1.1, relief.txt", False, 1.0)
     write(nixish, folder / "nixish.txt", "EMS Nixish", "SIL OFL 1.1, ems.txt", True, 1.0)
