@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import IO
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import IO, Any, NamedTuple
 
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.counted import counted
-from planner.errors import TrajectoryFileError
+from planner.drawing.options import ReadingOptions
+from planner.errors import TrajectoryFileError, UsageError
 
 FORMAT_VERSION = 1
 LONGEST_LINE = 1 << 16
@@ -53,6 +55,29 @@ class LeftOut:
 NOTHING_LEFT_OUT = LeftOut()
 
 
+class _Form(NamedTuple):
+    """How a value is written, and read. Errors of reading: ValueError."""
+
+    text: Callable[[Any], str]
+    value: Callable[[str], object]
+
+
+def _is_yes(text: str) -> bool:
+    if text not in ("yes", "no"):
+        raise ValueError("wanted yes or no")
+    return text == "yes"
+
+
+_READING = {
+    "text": _Form(str, str),
+    "font": _Form(str, Path),
+    "crop": _Form(str, str),
+    "occlude": _Form(lambda value: "yes" if value else "no", _is_yes),
+    "dpi": _Form(lambda value: _shortest(value), float),
+}
+"""The keys that say how the drawing was read, those of `ReadingOptions`; the usual values are not written."""
+
+
 @dataclass(frozen=True, slots=True)
 class Head:
     """What the comment lines say; the fields are those of `Trajectory`."""
@@ -66,6 +91,7 @@ class Head:
     placement: Placement
     left_out: LeftOut
     paper: PaperPose
+    reading: ReadingOptions
 
     def text(self) -> str:
         """The comment lines."""
@@ -104,6 +130,11 @@ class Head:
             entries.append(("mirror", "yes"))
         if self.left_out != NOTHING_LEFT_OUT:
             entries += [("left_out_mm", f"{self.left_out.length_mm:.6g}"), ("left_out_taps", str(self.left_out.taps))]
+        entries += [
+            (field.name, _READING[field.name].text(getattr(self.reading, field.name)))
+            for field in fields(ReadingOptions)
+            if getattr(self.reading, field.name) != field.default
+        ]
         return entries
 
 
@@ -160,6 +191,7 @@ def read_head(name: str, file: IO[str]) -> tuple[Head, str, int]:
         _placement(name, found),
         _left_out(name, found),
         paper,
+        _reading(name, found),
     )
     return head, line, number
 
@@ -193,6 +225,22 @@ def _left_out(name: str, found: Mapping[str, tuple[str, int]]) -> LeftOut:
                 f"'# {key}:' is {value:g}; less than nothing, or a part of a tap, cannot be left out",
             )
     return LeftOut(length_mm, int(taps))
+
+
+def _reading(name: str, found: Mapping[str, tuple[str, int]]) -> ReadingOptions:
+    told: dict[str, Any] = {}
+    for key, form in _READING.items():
+        if key in found:
+            text, line = found[key]
+            try:
+                told[key] = form.value(text)
+                ReadingOptions(**{"text": "outline", key: told[key]})  # a font needs outlines
+            except (UsageError, ValueError) as error:
+                raise TrajectoryFileError(name, line, f"'# {key}:' is '{shown(text)}': {error}") from None
+    try:
+        return ReadingOptions(**told)
+    except UsageError as error:
+        raise TrajectoryFileError(name, None, str(error)) from None
 
 
 def _numbers(name: str, found: Mapping[str, tuple[str, int]], key: str, count: int) -> list[float]:

@@ -41,6 +41,7 @@ from planner.phases import phases_of
 from planner.placement.clip import clip_strokes
 from planner.placement.fit import fit_to_canvas
 from planner.placement.pieces import Piece
+from planner.placement.short_gaps import SHORTEST_GAP_MM, gaps_to_draw
 from planner.placement.split import split_strokes
 from planner.progress import Report
 from planner.redundancy.arm_model import ArmModel
@@ -85,7 +86,7 @@ def plan(
     model, arm = context.model, context.model.arm
     lift_mm = _lift_mm(arm, settings)
     with executor_of(_worth_hiring(workers, drawing_file), context.make_ready) as executor:
-        drawing = read_drawing(drawing_file, partial(report, "reading"))
+        drawing = read_drawing(drawing_file, partial(report, "reading"), options=settings.reading)
         report("placing", 0, 1)
         canvas = canvas_of(model, settings.canvas, lift_mm)
         svg_to_arm, placement, scale, size_mm = _placed(drawing, canvas, settings)
@@ -111,7 +112,7 @@ def placed_strokes(
     """Strokes (n, 2) in arm mm, placed and in the order that they are planned in, and what was left out on the way.
     Errors: PlannerError."""
     lift_mm = _lift_mm(model.arm, settings)
-    drawing = read_drawing(drawing_file)
+    drawing = read_drawing(drawing_file, options=settings.reading)
     canvas = canvas_of(model, settings.canvas, lift_mm)
     svg_to_arm, _, _, _ = _placed(drawing, canvas, settings)
     strokes, _, warnings = _strokes(drawing, svg_to_arm, model, settings)
@@ -183,12 +184,12 @@ def _strokes(
     drawing: Drawing, svg_to_arm: FloatArray, model: ArmModel, settings: PlanSettings
 ) -> tuple[list[FloatArray], LeftOut, list[str]]:
     """Strokes (n, 2), arm mm, what was left out as out of reach, and what is to be said of them."""
-    warnings = []
+    warnings = drawing.notes()
     left_out = LeftOut()
-    if drawing.skipped:
-        counts = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
-        warnings.append(f"not drawn as in the SVG: {counts}")
-    strokes = flatten_all(drawing.outlines, svg_to_arm, FLATTEN_SHARE * settings.tolerance_mm)
+    short_gaps = gaps_to_draw(drawing.outlines, svg_to_arm)
+    if short_gaps:
+        warnings.append(f"gaps of dashes under {SHORTEST_GAP_MM:g} mm on paper, drawn solid: {len(short_gaps)}")
+    strokes = flatten_all([*drawing.outlines, *short_gaps], svg_to_arm, FLATTEN_SHARE * settings.tolerance_mm)
     strokes = join_strokes(strokes, JOIN_SHARE * settings.tolerance_mm)
     branches = model.branches(settings.weights)
     if settings.skip_unreachable:
@@ -403,6 +404,7 @@ def _assembled(
         placement=placement,
         left_out=left_out,
         paper=arm.paper,
+        reading=settings.reading,
     )
 
 

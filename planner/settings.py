@@ -7,6 +7,7 @@ from enum import StrEnum
 from math import inf
 
 from planner.checked import number_in, one_of
+from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.errors import UsageError
 
 MIN_RATE_HZ, MAX_RATE_HZ = 50.0, 10_000.0
@@ -79,6 +80,7 @@ class PlanSettings:
         rotate_deg: How far the drawing is turned before it is placed.
         skip_unreachable: Leave out what the arm cannot reach, and say so, instead of failing.
         weights: What method `path` spends the arm's redundancy on, None for the arm's own.
+        reading: How the drawing is read.
     """
 
     arm: str = "drawing_arm"
@@ -95,6 +97,7 @@ class PlanSettings:
     rotate_deg: float = 0.0
     skip_unreachable: bool = False
     weights: ConfigurationWeights | None = None
+    reading: ReadingOptions = AS_A_BROWSER
 
     def __post_init__(self) -> None:
         numbers = {
@@ -120,3 +123,5 @@ class PlanSettings:
             raise UsageError(f"arm is the name of an arm or of its .toml file, not {self.arm!r:.40}")
         if not isinstance(self.weights, ConfigurationWeights | None):
             raise UsageError(f"weights is a ConfigurationWeights, not {self.weights!r:.40}")
+        if not isinstance(self.reading, ReadingOptions):
+            raise UsageError(f"reading is a ReadingOptions, not {self.reading!r:.40}")

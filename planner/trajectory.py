@@ -12,6 +12,7 @@ import numpy as np
 
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import BoolArray, ByteArray, FloatArray, IntArray
+from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.errors import TrajectoryFileError, UsageError
 from planner.files import written_aside
 from planner.head import (
@@ -58,6 +59,7 @@ class Trajectory:
         placement: What the header tells of where the drawing went.
         left_out: What was not drawn on purpose.
         paper: Where the paper lies that arm millimetres are counted on, in the frame of the base.
+        reading: How the drawing was read.
     """
 
     arm: str
@@ -74,6 +76,7 @@ class Trajectory:
     placement: Placement = NOTHING_TOLD
     left_out: LeftOut = NOTHING_LEFT_OUT
     paper: PaperPose = BASE_PLANE
+    reading: ReadingOptions = AS_A_BROWSER
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Trajectory:
@@ -112,6 +115,7 @@ class Trajectory:
             self.placement,
             self.left_out,
             self.paper,
+            self.reading,
         )
 
     @property
@@ -203,6 +207,7 @@ def read_trajectory(source: Path) -> Trajectory:
         placement=head.placement,
         left_out=head.left_out,
         paper=head.paper,
+        reading=head.reading,
     )
 
 

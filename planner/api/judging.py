@@ -55,7 +55,7 @@ def check(
         trajectory = Trajectory.load(trajectory)
     elif not isinstance(trajectory, Trajectory):
         raise UsageError(f"check takes a trajectory or its file, not a value of type {type(trajectory).__name__}")
-    wanted = None if drawing is None else read_drawing(drawing_source(drawing))
+    wanted = None if drawing is None else read_drawing(drawing_source(drawing), options=trajectory.reading)
     return check_trajectory(trajectory, arm_of(trajectory.arm if arm is None else arm), wanted, tolerance)
 
 

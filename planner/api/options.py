@@ -6,13 +6,14 @@ from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import TypedDict
 
+from planner.drawing.options import ReadingOptions
 from planner.errors import UnknownOption, UsageError
 from planner.settings import ConfigurationWeights, PlanSettings
 
 
 class PlanOptions(TypedDict, total=False):
     """Keywords of `plan` and `compare`: those of `PlanSettings` but the arm. Choices may be given by their names, and
-    weights as a mapping."""
+    weights and how to read as mappings."""
 
     method: str
     rate_hz: float
@@ -27,6 +28,7 @@ class PlanOptions(TypedDict, total=False):
     rotate_deg: float
     skip_unreachable: bool
     weights: ConfigurationWeights | Mapping[str, float] | None
+    reading: ReadingOptions | Mapping[str, object]
 
 
 def settings_with(settings: PlanSettings | None, arm: str | None, options: PlanOptions) -> PlanSettings:
@@ -38,10 +40,12 @@ def settings_with(settings: PlanSettings | None, arm: str | None, options: PlanO
         raise UsageError(f"settings is a PlanSettings, not a value of type {type(settings).__name__}")
     require_known(options, [field.name for field in fields(PlanSettings)])
     changes: dict[str, object] = dict(options) if arm is None else {**options, "arm": arm}
-    weights = changes.get("weights")
-    if isinstance(weights, Mapping):
-        require_known(weights, [field.name for field in fields(ConfigurationWeights)])
-        changes["weights"] = ConfigurationWeights(**weights)
+    parts: dict[str, type] = {"weights": ConfigurationWeights, "reading": ReadingOptions}
+    for name, kind in parts.items():
+        value = changes.get(name)
+        if isinstance(value, Mapping):
+            require_known(value, [field.name for field in fields(kind)])
+            changes[name] = kind(**value)
     return replace(settings or PlanSettings(), **changes)  # type: ignore[arg-type]  # they check themselves
 
 

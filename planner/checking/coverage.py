@@ -14,9 +14,9 @@ from planner.checking.mapping import map_findings, map_trouble, user_to_arm
 from planner.checking.pen import place_of
 from planner.checking.polyline import DenseLines, dense_lines, joined_lines
 from planner.checking.repeats import most_repeated
+from planner.checking.wanted import wanted_lines
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
-from planner.drawing.flatten import flatten_all
 from planner.errors import UsageError
 from planner.head import NOTHING_LEFT_OUT, LeftOut
 from planner.trajectory import Trajectory
@@ -39,23 +39,23 @@ def drawing_findings(
     if trouble:
         return [Finding("svg_to_arm_mm", False, remark=trouble)]
     affine = user_to_arm(trajectory)
-    wanted_lines = flatten_all(drawing.outlines, affine, FLATTENING_MM)
-    wanted = _dense(wanted_lines)
+    lines = wanted_lines(drawing, affine, FLATTENING_MM)
+    allowed, required = _dense(lines.allowed), _dense(lines.required)
     pen_lines = [_pen_lines(sweep) for sweep in sweeps]
     shape = map_findings(trajectory, drawing, tolerance_mm)
     if not len(pen_lines[0].points_mm):
-        missing_mm = float(wanted.length_at_points_mm().sum())
+        missing_mm = float(required.length_at_points_mm().sum())
         return [
             *shape,
             Finding("nothing missing", False, remark=f"the pen is never down: all {missing_mm:.1f} mm are missing"),
         ]
     limit = tolerance_mm + FLATTENING_MM
-    off_mm = [wanted.distance_mm(pen.points_mm) for pen in pen_lines]
+    off_mm = [allowed.distance_mm(pen.points_mm) for pen in pen_lines]
     return [
         *shape,
         _extra(trajectory, pen_lines, off_mm, sweeps, limit, affine),
-        _missing(trajectory, wanted, wanted_lines, pen_lines, limit, affine),
-        _drawn_once(trajectory, wanted, pen_lines[0], off_mm[0] > limit, sweeps[0], limit, affine),
+        _missing(trajectory, required, lines.required, pen_lines, limit, affine),
+        _drawn_once(trajectory, allowed, pen_lines[0], off_mm[0] > limit, sweeps[0], limit, affine),
     ]
 
 
@@ -66,7 +66,7 @@ def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: Floa
     if trouble:
         raise UsageError(f"svg_to_arm_mm of the trajectory {trouble}")
     distance = np.zeros(trajectory.n_samples)
-    wanted = _dense(flatten_all(drawing.outlines, user_to_arm(trajectory), FLATTENING_MM))
+    wanted = _dense(wanted_lines(drawing, user_to_arm(trajectory), FLATTENING_MM).allowed)
     distance[trajectory.pen] = wanted.distance_mm(tip_mm[trajectory.pen, :2])
     return distance
 

@@ -85,6 +85,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.measure import measure
 
             return measure(rest)
+        case "lines":
+            from planner.cli.lines import lines
+
+            return lines(rest)
         case "compare":
             from planner.cli.compare import compare
 

@@ -57,7 +57,7 @@ def check(arguments: list[str]) -> int:
 
     trajectory = read_trajectory(options.trajectory)
     arm = load_arm(options.arm or trajectory.arm)
-    drawing = read_drawing(options.drawing) if options.drawing else None
+    drawing = read_drawing(options.drawing, options=trajectory.reading) if options.drawing else None
     check_result = check_trajectory(trajectory, arm, drawing, options.tolerance)
     if options.json:
         with written_aside(options.json) as file:

@@ -17,6 +17,7 @@ from planner.cli.quantities import (
     number,
     speed_mm_s,
 )
+from planner.cli.reading import add_reading_options, reading_of
 from planner.cli.report import check_report, write_report_of
 from planner.cli.terminal import print_summary, print_warnings, progress
 from planner.cli.workers import add_workers_option
@@ -29,6 +30,7 @@ Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a t
 
 other commands (each has its own --help; a drawing of that name is planned as ./NAME):
   plan batch FOLDER         plan every drawing of a folder
+  plan lines DRAWING.svg    what would be drawn, as plain lines on the page
   plan run traj.csv         play a trajectory on the simulated arm
   plan pattern --arm ARM    a trajectory of marks to calibrate an arm with
   plan calibrate ARM        an arm file from marks that the arm made
@@ -51,6 +53,7 @@ examples:
   draw | plan - > traj.csv                         from a program that writes an SVG, as part of a pipe
   plan city.svg --workers 4                        with four processes; the result does not depend on them
   plan flower.svg --weights time=3,reversals=0     configurations for speed rather than for servos with backlash
+  plan letter.svg --text outline --font Lora.ttf   letters as the outlines of a font, not as single lines
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
 
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
@@ -109,6 +112,7 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
         rotate_deg=options.rotate,
         skip_unreachable=options.skip_unreachable,
         weights=options.weights,
+        reading=reading_of(options),
     )
 
 
@@ -116,7 +120,7 @@ def _parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
     parser.usage = (
         "plan DRAWING.svg [-o traj.csv] [options]\n"
-        "       plan batch|run|pattern|measure|calibrate|predict|jog|ports|check|plot|compare|arm ..."
+        "       plan batch|lines|run|pattern|measure|calibrate|predict|jog|ports|check|plot|compare|arm ..."
     )
     parser.add_argument(
         "drawing", type=input_file, metavar="DRAWING.svg", help="the drawing, gzipped or not; - for standard input"
@@ -216,6 +220,7 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         help="rest on the paper after lowering (default: %(default)g s)",
     )
 
+    add_reading_options(parser)
     placement = parser.add_argument_group("placement")
     placement.add_argument(
         "--canvas",

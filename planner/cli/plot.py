@@ -205,7 +205,7 @@ def _figure(trajectory: Trajectory, arm: Arm, kind: str, options: argparse.Names
         arm,
         PlotKind(kind),
         look,
-        drawing=read_drawing(options.drawing) if options.drawing else None,
+        drawing=read_drawing(options.drawing, options=trajectory.reading) if options.drawing else None,
         tolerance_mm=options.tolerance or PlanSettings().tolerance_mm,
         stroke=options.stroke,
         from_s=options.from_s,

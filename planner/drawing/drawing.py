@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from planner.arrays import FloatArray
+from planner.drawing.options import AS_A_BROWSER, ReadingOptions
+
+if TYPE_CHECKING:
+    from planner.drawing.scene.shape import Scene
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -36,6 +41,7 @@ class Drawing:
         x to the right and y down from the top left corner (viewBox and preserveAspectRatio applied).
     page_mm: width and height of the page.
     skipped: how many things of each kind could not be drawn, e.g. {"text": 2, "image": 1}.
+    scene, reading: what the outlines were made from, and how; without a scene they were made by hand.
     """
 
     source: str
@@ -43,3 +49,10 @@ class Drawing:
     user_to_page: FloatArray
     page_mm: tuple[float, float]
     skipped: Mapping[str, int] = field(default_factory=dict)
+    scene: Scene | None = None
+    reading: ReadingOptions = AS_A_BROWSER
+
+    def notes(self) -> list[str]:
+        """What is to be said of it."""
+        counts = ", ".join(f"{count} {kind}" for kind, count in sorted(self.skipped.items()))
+        return [f"not drawn as in the SVG: {counts}"] if counts else []

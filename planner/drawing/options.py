@@ -2,23 +2,53 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
+
+from planner.checked import number_in
+from planner.errors import UsageError
 
 TextMode = Literal["single", "outline", "skip"]
 CropMode = Literal["page", "none"]
+TEXT_MODES: tuple[TextMode, ...] = get_args(TextMode)
+CROP_MODES: tuple[CropMode, ...] = get_args(CropMode)
+MIN_DPI, MAX_DPI = 10.0, 10_000.0
 
 
 @dataclass(frozen=True, slots=True)
 class ReadingOptions:
-    """text: glyphs as single lines, as the outlines of an installed font or of `font`, or not at all. crop: whether ink
-    beyond the page is cut off, as a browser does. is_occluding: whether lines under opaque fills that are painted later
-    are left out. dpi: CSS pixels per inch; old programs meant 72 or 90.
+    """How a drawing is read. Errors: UsageError for a value that means nothing.
+
+    Attributes:
+        text: What text becomes: "single" lines, the "outline" of an installed font or of `font`, or "skip".
+        font: A font file for the outlines, None for those that are installed.
+        crop: What is cut off: ink beyond the "page", as a browser does, or "none".
+        occlude: Whether lines under opaque fills that are painted later are left out.
+        dpi: Pixels of the drawing that make an inch; old programs meant 72 or 90.
     """
 
     text: TextMode = "single"
     font: Path | None = None
     crop: CropMode = "page"
-    is_occluding: bool = False
+    occlude: bool = False
     dpi: float = 96.0
+
+    def __post_init__(self) -> None:
+        for name, value, choices in (("text", self.text, TEXT_MODES), ("crop", self.crop, CROP_MODES)):
+            if value not in choices:
+                raise UsageError(f"{name} is one of {', '.join(choices)}, not {value!r:.40}")
+        if not isinstance(self.occlude, bool):
+            raise UsageError(f"occlude is True or False, not {self.occlude!r:.40}")
+        if self.font is not None:
+            if not isinstance(self.font, str | os.PathLike):
+                raise UsageError(f"font is the path of a font file, not {self.font!r:.40}")
+            if self.text != "outline":
+                raise UsageError(f'a font file goes with text "outline" (--text outline), not "{self.text}"')
+            object.__setattr__(self, "font", Path(self.font))
+        object.__setattr__(self, "dpi", number_in("dpi", self.dpi, minimum=MIN_DPI, maximum=MAX_DPI))
+
+
+AS_A_BROWSER = ReadingOptions()
+"""The usual way."""

@@ -28,7 +28,7 @@ def outlines(scene: Scene, options: ReadingOptions) -> tuple[tuple[Outline, ...]
     n_behind = n_backgrounds(scene)
     shapes = scene.shapes[n_behind:]
     lines = _clipped(shapes, _with_area(shapes))
-    if options.is_occluding:
+    if options.occlude:
         lines = _seen(shapes, lines, scene)
     n_beyond = 0
     if options.crop == "page":

@@ -52,7 +52,7 @@ def _shows_all(shape: Shape, scene: Scene) -> bool:
 
 
 def cut_to_the_page(lines: Sequence[Sequence[Subpath]], scene: Scene) -> tuple[list[list[Subpath]], int]:
-    """The parts of lines that are on the page, and how many lines were cut or left out."""
+    """The parts of lines of each thing that are on the page, and how many things lost any."""
     paths = [path for of_one in lines for path in of_one]
     if not paths:
         return [list(of_one) for of_one in lines], 0
@@ -75,9 +75,9 @@ def cut_to_the_page(lines: Sequence[Sequence[Subpath]], scene: Scene) -> tuple[l
             strict=True,
         )
     )
-    n_cut = sum(of_one != [paths[index]] for index, of_one in parts.items())
     index = iter(range(len(paths)))
-    return [[part for path in of_one for part in parts.get(next(index), [path])] for of_one in lines], n_cut
+    left = [[part for path in of_one for part in parts.get(next(index), [path])] for of_one in lines]
+    return left, sum(after != list(before) for before, after in zip(lines, left, strict=True))
 
 
 def _page_corners(scene: Scene, margin: float = 0.0) -> FloatArray:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
-from planner.drawing.options import ReadingOptions
+from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.drawing.outlines import outlines
 from planner.drawing.scene.scene import read_scene
 from planner.drawing.shapes import SHAPES
@@ -15,7 +15,6 @@ from planner.drawing.xml_tree import Document, read_tree
 from planner.errors import DrawingError
 
 _STEPS = 4
-_AS_BROWSERS_DO = ReadingOptions()
 _ADVICE = {
     "text": "convert text to paths (in Inkscape: Path, Object to Path)",
     "foreignObject": "convert embedded pages to paths, or export the drawing as plain SVG",
@@ -30,7 +29,7 @@ def read_drawing(
     svg: DrawingSource,
     report: Callable[[int, int], None] = lambda done, total: None,
     *,
-    options: ReadingOptions = _AS_BROWSERS_DO,
+    options: ReadingOptions = AS_A_BROWSER,
 ) -> Drawing:
     """All visible outlines of an SVG, a file or in memory, gzipped or not, with the page they are on.
 
@@ -50,7 +49,7 @@ def read_drawing(
     if not drawn:
         raise DrawingError(source, _nothing_drawable(document, skipped))
     report(_STEPS, _STEPS)
-    return Drawing(source, drawn, scene.user_to_page, scene.page_mm, skipped)
+    return Drawing(source, drawn, scene.user_to_page, scene.page_mm, skipped, scene, options)
 
 
 def _nothing_drawable(document: Document, skipped: Mapping[str, int]) -> str:

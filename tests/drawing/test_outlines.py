@@ -20,7 +20,7 @@ from planner.drawing.scene.shape import Paint, Scene, Shape, Stroke
 from planner.drawing.subpath import Subpath, polyline
 
 INK, WHITE = Paint((0, 0, 0), True), Paint((255, 255, 255), True)
-SEEN = ReadingOptions(is_occluding=True)
+SEEN = ReadingOptions(occlude=True)
 
 
 def rectangle(x: float, y: float, width: float, height: float) -> Subpath:

@@ -30,19 +30,21 @@ class ArcLength:
 
     @classmethod
     def of(cls, control: FloatArray) -> ArcLength:
-        """Stretches are halved until halves and whole agree, which near a cusp takes many."""
+        """Stretches are halved until halves and whole agree twice in a row, as once may be by chance: near a cusp that
+        takes many."""
         curve = np.arange(len(control))
         start, end = np.zeros(len(control)), np.ones(len(control))
         bound = _PRECISION * np.hypot(*np.moveaxis(np.diff(control, axis=1), 2, 0)).sum(axis=1)
         done: list[tuple[IntArray, FloatArray, FloatArray]] = []
-        whole = _length(control[curve], start, end)
+        whole, agreed = _length(control, start, end), np.zeros(len(control), dtype=np.bool_)
         for round_ in range(_ROUNDS):
             middle = 0.5 * (start + end)
             left, right = _length(control[curve], start, middle), _length(control[curve], middle, end)
-            is_fine = (np.abs(left + right - whole) <= bound[curve]) | (round_ == _ROUNDS - 1)
+            agrees = np.abs(left + right - whole) <= bound[curve]
+            is_fine = (agrees & agreed) | (round_ == _ROUNDS - 1)
             done.append((curve[is_fine], start[is_fine], (left + right)[is_fine]))
             rough = ~is_fine
-            curve = np.repeat(curve[rough], 2)
+            curve, agreed = np.repeat(curve[rough], 2), np.repeat(agrees[rough], 2)
             whole = np.column_stack((left[rough], right[rough])).ravel()
             start, end = (
                 np.column_stack((start[rough], middle[rough])).ravel(),

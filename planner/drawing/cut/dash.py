@@ -121,5 +121,11 @@ def _stretches(path: Subpath, length: ArcLength, starts: FloatArray, ends: Float
 
 
 def _with_gaps(dashes: Sequence[Subpath], gaps: Sequence[FloatArray]) -> list[Subpath]:
-    """gaps: those after the dashes, in order; the last may have none."""
-    return [replace(dash, gap=frozen(gap)) for dash, gap in zip(dashes, gaps, strict=False)] + list(dashes[len(gaps) :])
+    """gaps: those after the dashes, in order; the last dash may have none. Each is made to end exactly where dashes
+    do."""
+    with_gaps = list(dashes)
+    for index, gap in enumerate(gaps):
+        exact = gap.copy()
+        exact[0, 0], exact[-1, 3] = dashes[index].beziers[-1, 3], dashes[(index + 1) % len(dashes)].beziers[0, 0]
+        with_gaps[index] = replace(dashes[index], gap=frozen(exact))
+    return with_gaps

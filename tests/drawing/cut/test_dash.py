@@ -51,7 +51,7 @@ def test_arc_lengths_are_those_of_many_chords(path: Subpath) -> None:
     assert ArcLength.of(path.beziers).total == pytest.approx(dense_length(path.beziers), rel=1e-6, abs=1e-9)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(subpaths(), st.lists(st.floats(0.5, 30.0), min_size=1, max_size=4), st.floats(-40.0, 40.0))
 def test_dashes_and_gaps_have_their_lengths(path: Subpath, array: list[float], offset: float) -> None:
     total = ArcLength.of(path.beziers).total

@@ -1,0 +1,168 @@
+"""The lines that a drawing wants, cut in the check's own way from what the drawing shows.
+
+The reader cuts cubics at exact parameters, many at once. Here curves become polylines first, and Shapely's overlays
+cut these, shape by shape. Whether a line that runs along the edge of a region is in it is then a matter of chords: such
+lines may be drawn, and have to be only where they are surely inside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely.affinity import affine_transform
+from shapely.geometry.base import BaseGeometry
+
+from planner.arrays import FloatArray
+from planner.checking.filled import filled
+from planner.drawing.drawing import Drawing, Outline
+from planner.drawing.flatten import flatten_all
+from planner.drawing.scene.shape import Scene, Shape
+
+_SHORTEST_GAP_MM = 0.5
+_ROUNDING = 1e-4
+_EXACT_MM = 1e-7
+_CRUMB_MM = 0.02
+"""A cut may leave as much of a line that a region only touches."""
+_PAPER = 1e-3
+"""By so much of the page a rectangle may be smaller, and still is paper."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class WantedLines:
+    """Polylines (n, 2) on the paper; a tap has one point. allowed: what may be drawn. required: what has to be."""
+
+    allowed: list[FloatArray]
+    required: list[FloatArray]
+
+
+def wanted_lines(drawing: Drawing, affine: FloatArray, chord_mm: float) -> WantedLines:
+    """Those of a drawing where `affine` (2, 3) puts it, no further than `chord_mm` from its curves. Of a drawing
+    without a scene they are its outlines."""
+    if drawing.scene is None:
+        lines = flatten_all(drawing.outlines, affine, chord_mm)
+        return WantedLines(lines, lines)
+    allowed = _Cuts(drawing, affine, chord_mm, is_generous=True)
+    lines = allowed.lines()
+    if not allowed.has_cut:
+        return WantedLines(lines, lines)
+    return WantedLines(lines, _Cuts(drawing, affine, chord_mm, is_generous=False).lines() or lines)
+
+
+class _Cuts:
+    """One way to cut the lines of a scene: generous, with regions that show a little wider and those that hide as they
+    are, or the other way round."""
+
+    def __init__(self, drawing: Drawing, affine: FloatArray, chord_mm: float, is_generous: bool) -> None:
+        assert drawing.scene is not None
+        self._scene, self._reading = drawing.scene, drawing.reading
+        self._affine, self._chord_mm, self._is_generous = affine, chord_mm, is_generous
+        along_mm = 2.0 * chord_mm
+        self._shown_mm, self._hidden_mm = (along_mm, _EXACT_MM) if is_generous else (_EXACT_MM, along_mm)
+        self._crumb_mm = 0.0 if is_generous else _CRUMB_MM
+        self._known: dict[int, BaseGeometry] = {}
+        self.has_cut = False
+
+    def lines(self) -> list[FloatArray]:
+        shapes = _without_paper(self._scene)
+        covers = [self._cover(shape) for shape in shapes] if self._reading.occlude else []
+        under = shapely.STRtree(covers)
+        page = self._page()
+        found: list[FloatArray] = []
+        for index, shape in enumerate(shapes):
+            seen = self._drawn(shape)
+            for clip in shape.clips:
+                seen = self._cut(shapely.intersection, seen, self._shown(clip))
+            if covers and seen:
+                above = np.unique(under.query(seen, predicate="intersects")[1])
+                hidden = shapely.union_all(under.geometries[above[above > index]])
+                seen = self._cut(shapely.difference, seen, shapely.buffer(hidden, self._hidden_mm))
+            if self._reading.crop == "page":
+                seen = self._cut(shapely.intersection, seen, page)
+            found += [shapely.get_coordinates(line) for line in seen]
+            found += self._short_gaps(shape, seen)
+        return found
+
+    def _drawn(self, shape: Shape) -> list[BaseGeometry]:
+        """The lines of a shape before anything cuts them; edges of a fill only where it has an area."""
+        lines = flatten_all(shape.lines, self._affine, self._chord_mm)
+        if shape.fill is not None and shape.stroke is None:
+            lines = [line for line in lines if not filled([line], is_even_odd=False).is_empty]
+        return [shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0]) for line in lines]
+
+    def _cut(
+        self, overlay: Callable[..., Any], lines: Sequence[BaseGeometry], region: BaseGeometry
+    ) -> list[BaseGeometry]:
+        """What an overlay leaves of lines and taps; a line that is only touched leaves nothing."""
+        left: list[BaseGeometry] = []
+        if not lines:
+            return left
+        for line, cut in zip(lines, overlay(np.array(lines, dtype=object), region), strict=True):
+            if shapely.equals_exact(line, cut):
+                left.append(line)
+                continue
+            self.has_cut = True
+            dimension = shapely.get_dimensions(line)
+            left += [
+                part
+                for part in shapely.get_parts(cut)
+                if shapely.get_dimensions(part) == dimension and (dimension == 0 or part.length > self._crumb_mm)
+            ]
+        return left
+
+    def _shown(self, region: BaseGeometry) -> BaseGeometry:
+        if id(region) not in self._known:
+            self._known[id(region)] = shapely.buffer(_moved(region, self._affine), self._shown_mm)
+        return self._known[id(region)]
+
+    def _page(self) -> BaseGeometry:
+        back = np.linalg.inv(np.vstack((self._scene.user_to_page, (0.0, 0.0, 1.0))))[:2]
+        return self._shown(_moved(shapely.box(0.0, 0.0, *self._scene.page_mm), back))
+
+    def _cover(self, shape: Shape) -> BaseGeometry:
+        """What the shape hides of all that is painted before it."""
+        if shape.fill is None or not shape.fill.is_opaque:
+            return shapely.Polygon()
+        area = filled(flatten_all(shape.outline, self._affine, self._chord_mm), shape.is_even_odd)
+        return shapely.intersection_all([area, *(_moved(clip, self._affine) for clip in shape.clips)])
+
+    def _short_gaps(self, shape: Shape, seen: Sequence[BaseGeometry]) -> list[FloatArray]:
+        """The gaps that are too short to be left, between dashes that are both still there at them."""
+        gaps = [Outline(path.gap) for path in shape.lines if path.gap is not None]
+        if not gaps or not seen:
+            return []
+        longest_mm = _SHORTEST_GAP_MM * (1.0 + (_ROUNDING if self._is_generous else -_ROUNDING))
+        dashes = shapely.STRtree(seen)
+        return [
+            line
+            for line in flatten_all(gaps, self._affine, self._chord_mm)
+            if len(line) > 1
+            and shapely.LineString(line).length < longest_mm
+            and all(len(dashes.query(shapely.Point(end), "dwithin", _EXACT_MM)) for end in (line[0], line[-1]))
+        ]
+
+
+def _moved(region: BaseGeometry, affine: FloatArray) -> BaseGeometry:
+    (a, c, e), (b, d, f) = affine.tolist()
+    return affine_transform(region, [a, c, b, d, e, f])
+
+
+def _without_paper(scene: Scene) -> Sequence[Shape]:
+    """The shapes but for the first ones that are nothing but rectangles over all of the page, unless they are all."""
+    width, height = scene.page_mm
+    slack = _PAPER * max(width, height)
+    page = shapely.box(slack, slack, width - slack, height - slack)
+    for index, shape in enumerate(scene.shapes):
+        is_paper = shape.fill is not None and shape.stroke is None and len(shape.outline) == 1
+        if is_paper:
+            area = filled(flatten_all(shape.outline, scene.user_to_page, 1e-3 * slack), is_even_odd=False)
+            is_paper = area.area >= (1.0 - 1e-6) * area.envelope.area > 0.0 and all(
+                shapely.covers(region, page)
+                for region in (area, *(_moved(clip, scene.user_to_page) for clip in shape.clips))
+            )
+        if not is_paper:
+            return scene.shapes[index:] if any(rest.lines for rest in scene.shapes[index:]) else scene.shapes
+    return scene.shapes
