@@ -23,7 +23,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from benchmarks.targets import configurations, copp_socp, redundancy, scale, smooth, speed, whole
 from benchmarks.targets.row import Row, markdown
 from benchmarks.targets.strokes import drawings
+from planner.arms.arm_file import load_arm
 from planner.errors import PlannerError
+from planner.motion.speed_limit import pen_speed_mm_s
 from planner.settings import PlanSettings
 
 Measure = Callable[[Path, Path, PlanSettings], list[Row]]
@@ -104,7 +106,7 @@ def main() -> None:
             f"{datetime.now(UTC):%Y-%m-%d}. {machine()}.",
             "",
             f"Arm {settings.arm}, {len(found)} drawings, tolerance {settings.tolerance_mm:g} mm, pen at most"
-            f" {settings.speed_mm_s:g} mm/s. Made by `python benchmarks/table.py`.",
+            f" {pen_speed_mm_s(load_arm(settings.arm), settings):g} mm/s. Made by `python benchmarks/table.py`.",
             "",
             markdown(rows),
             "",

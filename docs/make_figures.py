@@ -2,7 +2,8 @@
 
     python docs/make_figures.py [NAME ...]
 
-`configurations_tradeoff.png` is of `benchmarks/tradeoff.py`.
+`configurations_tradeoff.png` is of `benchmarks/tradeoff.py`. Those of the first hour and of symptoms need the extra
+`test`.
 """
 
 from __future__ import annotations
@@ -12,9 +13,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from planner.cli import main
-
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from planner.cli import main  # noqa: E402
+
 IMAGES = ROOT / "docs" / "images"
 GARDEN = ROOT / "examples" / "garden.svg"
 PLOTS = {
@@ -34,6 +37,17 @@ COMPARISONS = {
     "compare_random.png": ["--random", "100", "--seed", "7"],
 }
 """What follows `plan compare`."""
+FIRST_HOUR = {
+    "sheet.png": "sheet.pdf",
+    "pattern.png": "pattern.png",
+    "reading.jpg": "reading.png",
+    "predicted.png": "predicted_after.png",
+    "before.png": "before.png",
+    "after.png": "after.png",
+}
+"""What each is made of, of what the first hour leaves."""
+SYMPTOMS = "symptoms.png"
+_WIDTH_PX, _COLOURS, _QUALITY = 1000, 256, 70
 
 
 def make(names: list[str]) -> None:
@@ -41,11 +55,48 @@ def make(names: list[str]) -> None:
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         _run([str(GARDEN), "-o", "traj.csv", "--quiet"])
-        for name in names or [*PLOTS, *COMPARISONS]:
+        wanted = names or [*PLOTS, *COMPARISONS, *FIRST_HOUR, SYMPTOMS]
+        if any(name in FIRST_HOUR for name in wanted):
+            from first_hour import first_hour
+
+            first_hour(GARDEN)
+            _run(["plot", "pattern.csv", "--kind", "drawing", "-o", "pattern.png"])
+        for name in wanted:
             if name in PLOTS:
                 _run(["plot", "--dpi", "100", *PLOTS[name], "-o", str(IMAGES / name)])
-            else:
+            elif name in COMPARISONS:
                 _run(["compare", *COMPARISONS[name], "--plot", str(IMAGES / name)])
+            elif name in FIRST_HOUR:
+                _small(Path(FIRST_HOUR[name]), IMAGES / name)
+            else:
+                _symptoms(IMAGES / name)
+
+
+def _symptoms(target: Path) -> None:
+    from symptoms import plot_symptoms
+
+    from planner.plots.figure_file import save_figure
+
+    save_figure(plot_symptoms(), Path("symptoms.png"))
+    _small(Path("symptoms.png"), target)
+
+
+def _small(source: Path, target: Path) -> None:
+    """A picture or a page of a PDF, as wide as the text of these pages and with few colours, or as JPEG."""
+    import pypdfium2
+    from PIL import Image, ImageOps
+
+    if source.suffix == ".pdf":
+        with pypdfium2.PdfDocument(source) as document:
+            picture = ImageOps.expand(document[0].render(scale=2).to_pil().convert("RGB"), 2, "#B5B5AE")
+    else:
+        picture = Image.open(source).convert("RGB")
+    height_px = round(picture.height * _WIDTH_PX / picture.width)
+    picture = picture.resize((_WIDTH_PX, height_px), Image.Resampling.LANCZOS)
+    if target.suffix == ".jpg":
+        picture.save(target, quality=_QUALITY, optimize=True)
+    else:
+        picture.quantize(_COLOURS, dither=Image.Dither.NONE).save(target, optimize=True)
 
 
 def _run(arguments: list[str]) -> None:

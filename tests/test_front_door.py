@@ -36,7 +36,7 @@ from planner.errors import (
 )
 from planner.settings import ConfigurationWeights, Method
 
-SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M2 2 5 4M7 7l1 0"/></svg>'
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path stroke="#000" d="M2 2 5 4M7 7l1 0"/></svg>'
 
 
 @pytest.fixture(scope="module")
@@ -211,6 +211,17 @@ def test_the_plan_is_that_of_the_command(tmp_path: Path, capsys: pytest.CaptureF
     assert capsys.readouterr() == ("", "")
 
 
+def test_how_a_drawing_is_read_may_be_said_in_words() -> None:
+    beyond = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path stroke="#000" d="M2 2H18"/></svg>'
+    cut, whole = plan(beyond, "scara", fit=False), plan(beyond, "scara", fit=False, reading={"crop": "none"})
+    assert whole.summary.size_mm[0] == pytest.approx(16 * cut.summary.size_mm[0] / 7)
+    assert check(whole.trajectory, beyond).passed and check(cut.trajectory, beyond).passed
+    with pytest.raises(UsageError, match="crop is one of page, none, not 'paper'"):
+        plan(beyond, reading={"crop": "paper"})
+    with pytest.raises(UnknownOption):
+        plan(beyond, reading={"cropped": "none"})
+
+
 def test_an_arm_is_a_name_a_file_or_a_value(planned: Plan, tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text((arms_folder() / "scara.toml").read_text(encoding="utf-8"), encoding="utf-8")
@@ -254,7 +265,7 @@ def test_a_plan_saves_itself_and_is_read_back(planned: Plan, tmp_path: Path) -> 
     assert np.allclose(read.positions, planned.trajectory.positions, atol=1e-9)
     for given_as in (file, str(file), read):
         assert check(given_as, SVG).passed
-    other = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path d="M2 7 5 4"/></svg>'
+    other = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path stroke="#000" d="M2 7 5 4"/></svg>'
     result = check(read, other, tolerance_mm=0.1)
     assert not result.passed and str(result) == result.text()
     with pytest.raises(OutputError):

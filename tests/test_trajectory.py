@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from planner.drawing.options import ReadingOptions
 from planner.errors import OutputError, TrajectoryFileError
 from planner.files import written_aside
 from planner.head import LeftOut, Placement
@@ -389,8 +390,32 @@ def test_the_placement_and_what_was_left_out_are_read_back(
 
 
 @pytest.mark.parametrize(
+    ("reading", "told"),
+    [
+        (ReadingOptions(), []),
+        (ReadingOptions(crop="none", occlude=True, dpi=72), ["# crop: none", "# occlude: yes", "# dpi: 72"]),
+        (ReadingOptions("outline", Path("a font.ttf")), ["# text: outline", "# font: a font.ttf"]),
+        (ReadingOptions(text="skip"), ["# text: skip"]),
+    ],
+)
+def test_how_the_drawing_was_read_is_told_where_it_is_not_the_usual_way(
+    reading: ReadingOptions, told: list[str], tmp_path: Path
+) -> None:
+    write_trajectory(replace(sample(), reading=reading), tmp_path / "traj.csv")
+    assert read_trajectory(tmp_path / "traj.csv").reading == reading
+    lines = (tmp_path / "traj.csv").read_text().splitlines()
+    assert [line for line in lines if line.startswith(("# text", "# font", "# crop", "# occlude", "# dpi"))] == told
+
+
+@pytest.mark.parametrize(
     ("entry", "reason"),
     [
+        ("text: loud", r"line 8: '# text:' is 'loud': text is one of single, outline, skip"),
+        ("font: a.ttf", r"a font file goes with text"),
+        ("crop: 1", r"line 8: '# crop:' is '1': crop is one of page, none"),
+        ("occlude: perhaps", r"line 8: '# occlude:' is 'perhaps': wanted yes or no"),
+        ("dpi: none", r"line 8: '# dpi:' is 'none'"),
+        ("dpi: 1", r"line 8: '# dpi:' is '1': dpi 1 has to be at least 10"),
         ("canvas_mm: 1 2 3", r"line 8: '# canvas_mm:' is '1 2 3'; wanted 4 number"),
         ("margin_mm: wide", r"line 8: '# margin_mm:' is 'wide'"),
         ("scale: nan", r"line 8: '# scale:' is 'nan'"),

@@ -13,6 +13,7 @@ from benchmarks.targets.strokes import TimedPaths, drawings, lines, placed_strok
 from benchmarks.targets.toppra_bound import bound_s
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
+from planner.motion.speed_limit import pen_speed_mm_s
 from planner.settings import PlanSettings
 from tests.timing.slp import least_time_s as least_time_slp_s
 
@@ -43,12 +44,13 @@ def against_toppra(folder: Path, settings: PlanSettings) -> list[Row]:
     target = "≤ 1.05"
     if absent := missing("toppra", what, target):
         return [absent]
+    usual_mm_s = pen_speed_mm_s(load_arm(settings.arm), settings)
     rows = []
     for capped in (settings, replace(settings, speed_mm_s=_UNCAPPED_MM_S)):
         groups = _smooth_strokes(folder, capped)
         if not groups:
             return [Row(what, target, "no such strokes")]
-        speed = f"pen at most {capped.speed_mm_s:g} mm/s" if capped is settings else "no cap on the pen's speed"
+        speed = f"pen at most {usual_mm_s:g} mm/s" if capped is settings else "no cap on the pen's speed"
         for per_s in _JERKS_PER_S:
             timings = [group.within(replace(group.limits, jerk=per_s * group.limits.acceleration)) for group in groups]
             bounds = [bound_s(timing.single(path)) for timing in timings for path in range(len(timing.time_s))]

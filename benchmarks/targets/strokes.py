@@ -36,8 +36,9 @@ from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 from planner.workspace.canvas import canvas_of
 
-UNROUNDED_HZ = 1e6
-"""A sample rate at which rounding up to whole periods is nothing."""
+UNROUNDED_HZ = 1e4
+"""A sample rate at which rounding up to whole periods is next to nothing, and minutes are no more samples than a plan
+may have."""
 
 _NO_CAP = 1e9
 

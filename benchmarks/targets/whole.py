@@ -20,6 +20,7 @@ from planner.errors import PlannerError
 from planner.inverse_kinematics.references import references_of
 from planner.inverse_kinematics.stroke_configurations import exact_configurations
 from planner.kinematics.limits import Limits
+from planner.motion.speed_limit import pen_speed_mm_s
 from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
 from planner.summary import PhaseTimes
@@ -33,6 +34,7 @@ _TOLERANCES_MM = (0.01, 0.05, 0.1, 0.2)
 def limits_and_stopping(folder: Path, settings: PlanSettings) -> list[Row]:
     """Both from one timing of all strokes."""
     arm = load_arm(settings.arm)
+    speed_mm_s = pen_speed_mm_s(arm, settings)
     worst, flowing_s, halting_s, least_s, n_points = np.zeros(3), 0.0, 0.0, 0.0, 0
     by_drawing = []
     for drawing in drawings(folder):
@@ -42,7 +44,7 @@ def limits_and_stopping(folder: Path, settings: PlanSettings) -> list[Row]:
         halts_s = stopping_s(arm, strokes, settings)
         worst = np.max([worst, *(shares_of_limits(paths) for paths in chunks)], axis=0)
         flowing_s, halting_s = flowing_s + flows_s, halting_s + halts_s
-        least_s += sum(map(length_mm, strokes)) / settings.speed_mm_s
+        least_s += sum(map(length_mm, strokes)) / speed_mm_s
         n_points += sum(map(len, strokes))
         by_drawing.append(f"{drawing.stem} {halts_s / flows_s:.1f}")
     return [
@@ -57,7 +59,7 @@ def limits_and_stopping(folder: Path, settings: PlanSettings) -> list[Row]:
             "at least 10 x shorter",
             f"{flowing_s:.0f} s, stopping {halting_s:.0f} s: {halting_s / flowing_s:.1f} x ("
             + ", ".join(by_drawing)
-            + f"); at {settings.speed_mm_s:g} mm/s all along, round every corner, it would be"
+            + f"); at {speed_mm_s:g} mm/s all along, round every corner, it would be"
             f" {halting_s / least_s:.1f} x",
             halting_s >= 10 * flowing_s,
         ),
@@ -97,7 +99,7 @@ def stopping_s(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) 
     way_mm = np.maximum(np.hypot(*np.diff(points, axis=0).T), 1e-12)
     inside = np.ones(len(steps), dtype=bool)
     inside[np.cumsum([len(stroke) for stroke in strokes])[:-1] - 1] = False
-    velocity = np.minimum((limits.velocity / steps).min(axis=1), settings.speed_mm_s / way_mm)[inside]
+    velocity = np.minimum((limits.velocity / steps).min(axis=1), pen_speed_mm_s(arm, settings) / way_mm)[inside]
     acceleration, jerk = ((limit / steps).min(axis=1)[inside] for limit in (limits.acceleration, limits.jerk))
     return sum(
         rest_to_rest(1.0, v, a, j).duration_s

@@ -10,39 +10,46 @@ from dataclasses import replace
 import numpy as np
 
 from hardware.compensation.servo_values import own_calibration
-from planner.arms.arm import Arm, Joint
+from planner.arms.arm import Arm, Joint, Servo
 from planner.arms.paper_pose import PaperPose
 from planner.arrays import FloatArray
 from planner.errors import UsageError
 
+_ROUNDING = 1e-9
 
-def turned_round(arm: Arm, k: int) -> Arm:
-    """Joint k turns the other way than was thought: the same value is the mirrored position."""
+
+def turned_round(arm: Arm, k: int, here: float) -> Arm:
+    """Joint k, which stands at `here`, rad or mm, turns the other way than was thought: positions are mirrored
+    there."""
     joint = arm.joints[k]
     if joint.servo is not None:
-        return _with(arm, k, replace(joint, servo=replace(joint.servo, direction=-joint.servo.direction)))
-    assert joint.bus is not None
-    bus = joint.bus
-    curve = None if bus.curve is None else tuple((-at, count) for at, count in reversed(bus.curve))
-    return _with(arm, k, replace(joint, bus=replace(bus, counts_per_unit=-bus.counts_per_unit, curve=curve)))
-
-
-def standing_at(arm: Arm, k: int, position: float, value: float) -> Arm:
-    """Joint k is at `position`, rad or mm, while its servo is told `value`: the whole curve moves along.
-
-    Errors: UsageError where the servo then cannot move the joint within its limits at all.
-    """
-    joint, off = arm.joints[k], value - told(arm, k, position)
-    if joint.servo is not None:
-        moved = replace(joint, servo=replace(joint.servo, trim_us=joint.servo.trim_us + off))
+        turned = replace(joint, servo=_moved(joint.servo, -2 * here, -joint.servo.direction))
     else:
         assert joint.bus is not None
         bus = joint.bus
-        curve = None if bus.curve is None else tuple((at, count + off) for at, count in bus.curve)
-        moved = replace(joint, bus=replace(bus, count_at_zero=bus.count_at_zero + off, curve=curve))
+        curve = None if bus.curve is None else tuple((2 * here - at, count) for at, count in reversed(bus.curve))
+        zero = bus.count_at_zero + 2 * bus.counts_per_unit * here
+        turned = replace(joint, bus=replace(bus, count_at_zero=zero, counts_per_unit=-bus.counts_per_unit, curve=curve))
+    return _with(arm, k, turned)
+
+
+def standing_at(arm: Arm, k: int, here: float, position: float) -> Arm:
+    """Joint k is at `position`, rad or mm, where it was thought to stand at `here`: all its positions move along.
+
+    Errors: UsageError where the servo then cannot move the joint within its limits at all.
+    """
+    joint, off = arm.joints[k], position - here
+    if joint.servo is not None:
+        moved = replace(joint, servo=_moved(joint.servo, off, joint.servo.direction))
+    else:
+        assert joint.bus is not None
+        bus = joint.bus
+        curve = None if bus.curve is None else tuple((at + off, count) for at, count in bus.curve)
+        zero = bus.count_at_zero - bus.counts_per_unit * off
+        moved = replace(joint, bus=replace(bus, count_at_zero=zero, curve=curve))
     changed = _with(arm, k, moved)
-    low, high = own_calibration(changed).reach[k] if _has_range(changed, k) else (np.nan, np.nan)
-    if not low < min(high, joint.maximum) or not max(low, joint.minimum) < high:
+    low, high = own_calibration(changed).reach[k]
+    if not (low < joint.maximum and joint.minimum < high):
         raise UsageError(f"joint {joint.name}: with its zero there its servo reaches no position within its limits")
     return changed
 
@@ -61,6 +68,17 @@ def limited(arm: Arm, k: int, position: float, *, upper: bool) -> Arm:
     if parked:
         raise UsageError(f"joint {joint.name}: the [park] pose of the file would be outside; change that first")
     return _with(arm, k, changed)
+
+
+def parked(arm: Arm, positions: FloatArray) -> Arm:
+    """The arm is parked at `positions` (n_joints,) from now on; joints that a coupling drives are where that has them.
+    Errors: UsageError where a joint would be outside its limits."""
+    park = arm.complete(positions[list(arm.independent_joints)])
+    beyond = (park < arm.minimum - _ROUNDING) | (park > arm.maximum + _ROUNDING)
+    if beyond.any():
+        joint = arm.joints[int(np.argmax(beyond))]
+        raise UsageError(f"joint {joint.name} would be parked outside its limits")
+    return replace(arm, park=tuple(np.clip(park, arm.minimum, arm.maximum).tolist()))
 
 
 def paper_under(arm: Arm, tip_mm: FloatArray, card_mm: float) -> Arm:
@@ -88,9 +106,10 @@ def _straight_on(x: float, xs: FloatArray, ys: FloatArray) -> float:
     return float(ys[first] + (ys[first + 1] - ys[first]) * (x - xs[first]) / (xs[first + 1] - xs[first]))
 
 
-def _has_range(arm: Arm, k: int) -> bool:
-    low, high = own_calibration(arm).ranges[k]
-    return bool(low < high)
+def _moved(servo: Servo, by: float, direction: int) -> Servo:
+    """The servo `by` further along its joint before that is turned into `direction`; it is told the same pulses."""
+    curve = tuple((at + servo.direction * by, pulse_us) for at, pulse_us in servo.curve)
+    return replace(servo, curve=curve, direction=direction)
 
 
 def _with(arm: Arm, k: int, joint: Joint) -> Arm:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from hardware.clock import Clock
@@ -26,14 +28,23 @@ class Jogging:
 
     The driver goes on speaking of positions as the file had them; `values` are what servos are really told, so that a
     changed direction or zero moves nothing by itself. Methods that move may raise HardwareError; those that are refused
-    raise UsageError, and have moved and changed nothing.
+    raise UsageError, and have moved and changed nothing. `watch` is called with every set point, and may raise what
+    ends it all.
     """
 
-    def __init__(self, arm: Arm, driver: Driver, calibration: Calibration, clock: Clock) -> None:
+    def __init__(
+        self,
+        arm: Arm,
+        driver: Driver,
+        calibration: Calibration,
+        clock: Clock,
+        watch: Callable[[], None] = lambda: None,
+    ) -> None:
+        """Errors: UsageError where a servo reaches no position within the limits of its joint."""
         self.arm = arm
-        self._file, self._driver, self._clock = arm, driver, clock
+        self._file, self._driver, self._clock, self._watch = arm, driver, clock, watch
         self._calibration = calibration
-        self._at: FloatArray = (arm.minimum + arm.maximum) / 2 if arm.park is None else np.array(arm.park)
+        self._at = start_of(arm, calibration)
         self._below: FloatArray | None = None
         self.joint = 0
 
@@ -94,16 +105,21 @@ class Jogging:
         self._below = None
 
     def turn_round(self) -> None:
-        """The chosen joint turned the wrong way."""
-        self.arm = adjustments.turned_round(self.arm, self.joint)
+        """The chosen joint turned the wrong way; it stands where it is thought to."""
+        self.arm = adjustments.turned_round(self.arm, self.joint, float(self.positions[self.joint]))
 
     def stands_at(self, position: float) -> None:
         """The chosen joint stands at so many deg or mm now."""
-        self.arm = adjustments.standing_at(self.arm, self.joint, position * self._per, float(self.values[self.joint]))
+        here = float(self.positions[self.joint])
+        self.arm = adjustments.standing_at(self.arm, self.joint, here, position * self._per)
 
     def limit(self, *, upper: bool) -> None:
         """The chosen joint goes no further than where it stands."""
         self.arm = adjustments.limited(self.arm, self.joint, float(self.positions[self.joint]), upper=upper)
+
+    def park_here(self) -> None:
+        """The arm is parked as it stands now."""
+        self.arm = adjustments.parked(self.arm, self.positions)
 
     def on_card(self, card_mm: float) -> None:
         """The pen just holds a card of that thickness on the paper."""
@@ -161,6 +177,20 @@ class Jogging:
         start_s = self._clock.now_s()
         for k, positions in enumerate(way):
             self._clock.sleep_until(start_s + k / _RATE_HZ - self._driver.ahead_s)
+            self._watch()
             self._driver.send(positions, 1 / _RATE_HZ)
             self._at = positions
         self._driver.flush()
+
+
+def start_of(arm: Arm, calibration: Calibration) -> FloatArray:
+    """(n_joints,) where jogging begins, rad or mm: the park pose, or the middle of where joints may and servos can go.
+    Errors: UsageError where there is nothing of a joint's."""
+    if arm.park is not None:
+        return np.array(arm.park)
+    low, high = np.maximum(arm.minimum, calibration.reach[:, 0]), np.minimum(arm.maximum, calibration.reach[:, 1])
+    if (low > high).any():
+        joint = arm.joints[int(np.argmax(low > high))]
+        raise UsageError(f"joint {joint.name}: its servo reaches no position within its limits; correct the arm file")
+    middle: FloatArray = (low + high) / 2
+    return middle

@@ -23,6 +23,7 @@ from planner.errors import HardwareError, UsageError
 _STEP_S = 0.001
 _M = 1e-3
 """MuJoCo counts in metres and kilograms."""
+_GRAVITY_M_S2 = 9.81
 _LINK_RADIUS_M, _LINK_KG_M3 = 0.006, 600.0
 _ARMATURE = 2e-3
 """What the motors' rotors add behind their gears, kg m2 (kg for a slide): far more than the links themselves."""
@@ -59,7 +60,7 @@ class MujocoArm:
 
     @property
     def tip_mm(self) -> FloatArray:
-        """(3,) where the tip of the pen is."""
+        """(3,) where the tip of the pen is in the paper's frame, which is the model's own."""
         tip_mm: FloatArray = self._data.site("tip").xpos / _M
         return tip_mm
 
@@ -119,11 +120,19 @@ class MujocoArm:
 
 
 def model_of(arm: Arm) -> str:
-    """MJCF of the DH chain. Row (theta, d, a, alpha) is a body at the end of the row before, turned by theta, whose
-    joint turns about z or slides along it; its links go d along z and then a along x. Joints are driven by position."""
+    """MJCF of the DH chain, in the frame of the paper; the base stands upright. Row (theta, d, a, alpha) is a body at
+    the end of the row before, turned by theta, whose joint turns about z or slides along it; its links go d along z and
+    then a along x. Joints are driven by position."""
     root = ElementTree.Element("mujoco", model=arm.name)
     ElementTree.SubElement(root, "compiler", angle="radian", autolimits="true")
-    ElementTree.SubElement(root, "option", timestep=f"{_STEP_S}", integrator="implicitfast")
+    T_paper_base = arm.paper.T_paper_base
+    ElementTree.SubElement(
+        root,
+        "option",
+        timestep=f"{_STEP_S}",
+        integrator="implicitfast",
+        gravity=_spaced(-_GRAVITY_M_S2 * T_paper_base[:3, 2]),
+    )
     visual = ElementTree.SubElement(root, "visual")
     ElementTree.SubElement(visual, "global", offwidth=str(_WIDTH), offheight=str(_HEIGHT))
     ElementTree.SubElement(visual, "map", znear="0.01")
@@ -134,7 +143,13 @@ def model_of(arm: Arm) -> str:
         world, "geom", type="plane", size="0.4 0.4 0.01", rgba="0.96 0.95 0.92 1", contype="0", conaffinity="0"
     )
     actuators = ElementTree.SubElement(root, "actuator")
-    parent, place, tilt = world, "0 0 0", 0.0
+    base = ElementTree.SubElement(
+        world,
+        "body",
+        pos=_spaced(T_paper_base[:3, 3] * _M),
+        xyaxes=_spaced(np.concatenate((T_paper_base[:3, 0], T_paper_base[:3, 1]))),
+    )
+    parent, place, tilt = base, "0 0 0", 0.0
     for joint in arm.joints:
         slides = joint.kind is JointKind.PRISMATIC
         body = ElementTree.SubElement(parent, "body", pos=place, quat=_turned(tilt, joint.theta_rad))
@@ -161,7 +176,7 @@ def model_of(arm: Arm) -> str:
                     contype="0",
                     conaffinity="0",
                     rgba="0.2 0.45 0.7 1",
-                    fromto=" ".join(f"{value:.9g}" for value in (*begin, *end)),
+                    fromto=_spaced(np.array((*begin, *end))),
                 )
         # A joint that no link goes out from would have no mass at all.
         ElementTree.SubElement(
@@ -177,6 +192,10 @@ def model_of(arm: Arm) -> str:
         parent, place, tilt = body, f"{a:.9g} 0 {d:.9g}", joint.alpha_rad
     ElementTree.SubElement(parent, "site", name="tip", pos=place, size="0.001")
     return ElementTree.tostring(root, encoding="unicode")
+
+
+def _spaced(values: FloatArray) -> str:
+    return " ".join(f"{value:.12g}" for value in values.tolist())
 
 
 def _turned(tilt_rad: float, theta_rad: float) -> str:

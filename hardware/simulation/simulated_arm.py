@@ -28,8 +28,6 @@ class Servos(StrEnum):
     REAL = "real"
     """Those of an arm that need not be as its file says: commanded by the file, they do what the arm makes of it, with
     resolution, dead band, backlash and lag."""
-    LAGGING = "lagging"
-    """A lag alone, for an arm file that says nothing of servos."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -176,51 +174,30 @@ class _Ideal:
         return float(np.max(np.abs(target - self.positions) / self._max_velocity))
 
 
-class _Lagging:
-    """Joints that their motors move after their set points with a lag."""
+class _Real:
+    """Joints behind servos: a pulse or a count of limited resolution, a motor that runs after what is beyond the dead
+    band with a lag, and gears with play, inside which the joint stays where it is. Told as `arm` says, moved as
+    `true_arm` is. positions: (n_joints,), rad or mm."""
 
     def __init__(self, arm: Arm, true_arm: Arm) -> None:
+        self._assumed, self._true = own_calibration(arm), own_calibration(true_arm)
+        self._step, self._dead_band, self._play = self._true.steps, self._true.dead_bands, self._true.backlash
         self._max_velocity = true_arm.max_velocity
         self._lag_s = np.array([_lag_s(joint) for joint in true_arm.joints])
         self._motors = self.positions = np.zeros(arm.n_joints)
 
     def stand_at(self, positions: FloatArray) -> None:
-        self._motors = self.positions = self._wanted(positions)
+        self._motors = self.positions = self._true.to_joints(self._rounded(positions))
 
     def run(self, target: FloatArray, duration_s: float) -> None:
         furthest = self._max_velocity * duration_s
         share = -np.expm1(-duration_s / self._lag_s)
         self._motors = self._motors + np.clip(share * self._pull(target), -furthest, furthest)
-        self.positions = self._moved()
+        self.positions = np.clip(self.positions, self._motors - self._play / 2, self._motors + self._play / 2)
 
     def settling_s(self, target: FloatArray) -> float:
-        away = np.abs(self._wanted(target) - self._motors)
+        away = np.abs(self._true.to_joints(self._rounded(target)) - self._motors)
         return float(np.max(away / self._max_velocity + _SETTLED_LAGS * self._lag_s))
-
-    def _wanted(self, target: FloatArray) -> FloatArray:
-        """Where the joints would be if their motors followed the commands exactly."""
-        return target.copy()
-
-    def _pull(self, target: FloatArray) -> FloatArray:
-        """How far each motor wants to go."""
-        return self._wanted(target) - self._motors
-
-    def _moved(self) -> FloatArray:
-        """Where the motors take the joints."""
-        return self._motors
-
-
-class _Real(_Lagging):
-    """Joints behind servos: a pulse or a count of limited resolution, a motor that runs after what is beyond the dead
-    band, and gears with play, inside which the joint stays where it is. Told as `arm` says, moved as `true_arm` is."""
-
-    def __init__(self, arm: Arm, true_arm: Arm) -> None:
-        super().__init__(arm, true_arm)
-        self._assumed, self._true = own_calibration(arm), own_calibration(true_arm)
-        self._step, self._dead_band, self._play = self._true.steps, self._true.dead_bands, self._true.backlash
-
-    def _wanted(self, target: FloatArray) -> FloatArray:
-        return self._true.to_joints(self._rounded(target))
 
     def _rounded(self, target: FloatArray) -> FloatArray:
         commanded = self._assumed.to_servos(target)
@@ -228,15 +205,13 @@ class _Real(_Lagging):
         return np.where(self._step > 0, np.round(commanded / step) * step, commanded)
 
     def _pull(self, target: FloatArray) -> FloatArray:
+        """How far each motor wants to go."""
         commanded = self._rounded(target)
         wanted = self._true.to_joints(commanded)
         dead_band = np.abs(self._true.to_joints(commanded + self._dead_band) - wanted)
         error = wanted - self._motors
         pull: FloatArray = np.sign(error) * np.maximum(np.abs(error) - dead_band, 0.0)
         return pull
-
-    def _moved(self) -> FloatArray:
-        return np.clip(self.positions, self._motors - self._play / 2, self._motors + self._play / 2)
 
 
 def _lag_s(joint: Joint) -> float:
@@ -245,8 +220,7 @@ def _lag_s(joint: Joint) -> float:
     return SERVO_LAG_S if known is None or known.lag_s == 0 else known.lag_s
 
 
-_KINDS: dict[Servos, Callable[[Arm, Arm], _Ideal | _Lagging]] = {
+_KINDS: dict[Servos, Callable[[Arm, Arm], _Ideal | _Real]] = {
     Servos.IDEAL: _Ideal,
     Servos.REAL: _Real,
-    Servos.LAGGING: _Lagging,
 }

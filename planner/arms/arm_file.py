@@ -226,6 +226,15 @@ def load_arm(name_or_file: str) -> Arm:
     return read_arm_file(arms_folder() / f"{name_or_file}.toml")
 
 
+def arm_file_text(name_or_file: str) -> str:
+    """The text that `load_arm` reads. Errors: ArmFileError where there is none."""
+    path = Path(name_or_file) if name_or_file.endswith(".toml") else arms_folder() / f"{name_or_file}.toml"
+    try:
+        return _text(path)
+    except OSError as error:
+        raise ArmFileError(str(path), [f"cannot be read: {error.strerror}"]) from error
+
+
 def read_arm_file(path: Path) -> Arm:
     """Read, check and convert one arm file. Errors: ArmFileError with all faults."""
     try:

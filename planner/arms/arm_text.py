@@ -148,10 +148,11 @@ def _bus(bus: BusServo, unit: str, per: float) -> dict[str, object]:
 
 
 def _lines(values: Mapping[str, object]) -> str:
-    return "\n".join(f"{key} = {_value(value)}" for key, value in values.items())
+    return "\n".join(f"{key} = {value_text(value)}" for key, value in values.items())
 
 
-def _value(value: object) -> str:
+def value_text(value: object) -> str:
+    """A text, a number, a list or a table of such as a file has it."""
     match value:
         case str():
             escaped = value.replace("\\", "\\\\").replace('"', '\\"')
@@ -161,15 +162,15 @@ def _value(value: object) -> str:
         case float():
             return repr(float(f"{value:.10g}"))
         case list() if value and isinstance(value[0], list):
-            rows = [_value(row) for row in value]
+            rows = [value_text(row) for row in value]
             lines = [", ".join(rows[k : k + 6]) for k in range(0, len(rows), 6)]
             return "[\n    " + ",\n    ".join(lines) + ",\n]"
         case list():
-            return "[" + ", ".join(map(_value, value)) + "]"
+            return "[" + ", ".join(map(value_text, value)) + "]"
         case dict():
-            return "{ " + ", ".join(f"{key} = {_value(entry)}" for key, entry in value.items()) + " }"
+            return "{ " + ", ".join(f"{key} = {value_text(entry)}" for key, entry in value.items()) + " }"
         case _:
-            return _value(float(np.float64(value)))  # type: ignore[arg-type]
+            return value_text(float(np.float64(value)))  # type: ignore[arg-type]
 
 
 def _degrees(angle_rad: float) -> float:

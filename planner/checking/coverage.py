@@ -40,11 +40,11 @@ def drawing_findings(
         return [Finding("svg_to_arm_mm", False, remark=trouble)]
     affine = user_to_arm(trajectory)
     lines = wanted_lines(drawing, affine, FLATTENING_MM)
-    allowed, required = _dense(lines.allowed), _dense(lines.required)
+    allowed = _dense(lines.allowed)
     pen_lines = [_pen_lines(sweep) for sweep in sweeps]
     shape = map_findings(trajectory, drawing, tolerance_mm)
     if not len(pen_lines[0].points_mm):
-        missing_mm = float(required.length_at_points_mm().sum())
+        missing_mm = float(allowed.length_at_points_mm().sum())
         return [
             *shape,
             Finding("nothing missing", False, remark=f"the pen is never down: all {missing_mm:.1f} mm are missing"),
@@ -54,7 +54,7 @@ def drawing_findings(
     return [
         *shape,
         _extra(trajectory, pen_lines, off_mm, sweeps, limit, affine),
-        _missing(trajectory, required, lines.required, pen_lines, limit, affine),
+        _missing(trajectory, lines.required, pen_lines, limit, affine),
         _drawn_once(trajectory, allowed, pen_lines[0], off_mm[0] > limit, sweeps[0], limit, affine),
     ]
 
@@ -121,21 +121,23 @@ def _extra(
 
 def _missing(
     trajectory: Trajectory,
-    wanted: DenseLines,
-    wanted_lines: Sequence[FloatArray],
+    required: Sequence[FloatArray],
     pen_lines: Sequence[DenseLines],
     limit: float,
     affine: FloatArray,
 ) -> Finding:
     """What is missing may be as much as the header says was left out; it has to be at least half of that, since lines
     that cross or cover it may hide some."""
+    if not required:
+        return Finding("nothing missing", True, remark="nothing has to be there: all is on the edge of what is seen")
+    wanted = _dense(required)
     distance = np.max([pen.distance_mm(wanted.points_mm) for pen in pen_lines], axis=0)
     index = int(np.argmax(distance))
     worst = float(distance[index])
-    ends = np.cumsum([len(line) for line in wanted_lines])
+    ends = np.cumsum([len(line) for line in required])
     outline = int(np.searchsorted(ends, wanted.source[index], side="right"))
     is_missing = distance > limit
-    taps = np.array([len(line) == 1 for line in wanted_lines])
+    taps = np.array([len(line) == 1 for line in required])
     missing = LeftOut(
         float(wanted.length_at_points_mm()[is_missing].sum()),
         int(taps[np.searchsorted(ends, wanted.source[is_missing], side="right")].sum()),

@@ -24,6 +24,8 @@ class DrawingErrors:
     largest_mm: float
 
     def text(self) -> str:
+        if not np.isfinite(self.rms_mm):
+            return "nothing: the pen left no ink where ink was wanted"
         return (
             f"off by {self.rms_mm:.3f} mm rms, {self.most_mm:.3f} mm for 95 %, {self.largest_mm:.3f} mm at the largest"
         )

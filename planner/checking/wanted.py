@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,7 @@ _CRUMB_MM = 0.02
 """A cut may leave as much of a line that a region only touches."""
 _PAPER = 1e-3
 """By so much of the page a rectangle may be smaller, and still is paper."""
+_Overlay = Callable[[Any], Any]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -49,7 +51,7 @@ def wanted_lines(drawing: Drawing, affine: FloatArray, chord_mm: float) -> Wante
     lines = allowed.lines()
     if not allowed.has_cut:
         return WantedLines(lines, lines)
-    return WantedLines(lines, _Cuts(drawing, affine, chord_mm, is_generous=False).lines() or lines)
+    return WantedLines(lines, _Cuts(drawing, affine, chord_mm, is_generous=False).lines())
 
 
 class _Cuts:
@@ -75,13 +77,13 @@ class _Cuts:
         for index, shape in enumerate(shapes):
             seen = self._drawn(shape)
             for clip in shape.clips:
-                seen = self._cut(shapely.intersection, seen, self._shown(clip))
+                seen = self._shown_of(seen, self._shown(clip))
             if covers and seen:
                 above = np.unique(under.query(seen, predicate="intersects")[1])
                 hidden = shapely.union_all(under.geometries[above[above > index]])
-                seen = self._cut(shapely.difference, seen, shapely.buffer(hidden, self._hidden_mm))
+                seen = self._unhidden_of(seen, shapely.buffer(hidden, self._hidden_mm))
             if self._reading.crop == "page":
-                seen = self._cut(shapely.intersection, seen, page)
+                seen = self._shown_of(seen, page)
             found += [shapely.get_coordinates(line) for line in seen]
             found += self._short_gaps(shape, seen)
         return found
@@ -93,24 +95,25 @@ class _Cuts:
             lines = [line for line in lines if not filled([line], is_even_odd=False).is_empty]
         return [shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0]) for line in lines]
 
-    def _cut(
-        self, overlay: Callable[..., Any], lines: Sequence[BaseGeometry], region: BaseGeometry
-    ) -> list[BaseGeometry]:
-        """What an overlay leaves of lines and taps; a line that is only touched leaves nothing."""
+    def _shown_of(self, lines: Sequence[BaseGeometry], region: BaseGeometry) -> list[BaseGeometry]:
+        """What of lines and taps is in a region."""
+        is_whole = shapely.covers(region, lines).tolist()
+        return self._cut(lines, is_whole, lambda parts: shapely.intersection(parts, region))
+
+    def _unhidden_of(self, lines: Sequence[BaseGeometry], region: BaseGeometry) -> list[BaseGeometry]:
+        """What of lines and taps is not."""
+        is_whole = shapely.disjoint(region, lines).tolist()
+        return self._cut(lines, is_whole, lambda parts: shapely.difference(parts, region))
+
+    def _cut(self, lines: Sequence[BaseGeometry], is_whole: Sequence[bool], overlay: _Overlay) -> list[BaseGeometry]:
         left: list[BaseGeometry] = []
-        if not lines:
-            return left
-        for line, cut in zip(lines, overlay(np.array(lines, dtype=object), region), strict=True):
-            if shapely.equals_exact(line, cut):
+        for line, whole in zip(lines, is_whole, strict=True):
+            if whole:
                 left.append(line)
                 continue
             self.has_cut = True
-            dimension = shapely.get_dimensions(line)
-            left += [
-                part
-                for part in shapely.get_parts(cut)
-                if shapely.get_dimensions(part) == dimension and (dimension == 0 or part.length > self._crumb_mm)
-            ]
+            if shapely.get_dimensions(line) == 1:
+                left += [part for part in _torn(line, overlay) if part.length > self._crumb_mm]
         return left
 
     def _shown(self, region: BaseGeometry) -> BaseGeometry:
@@ -143,6 +146,36 @@ class _Cuts:
             and shapely.LineString(line).length < longest_mm
             and all(len(dashes.query(shapely.Point(end), "dwithin", _EXACT_MM)) for end in (line[0], line[-1]))
         ]
+
+
+def _torn(line: BaseGeometry, overlay: _Overlay) -> list[BaseGeometry]:
+    """What an overlay leaves of a line, segment by segment: of a line as a whole it makes one of what lies there
+    twice."""
+    points = shapely.get_coordinates(line)
+    segments = shapely.linestrings(np.stack((points[:-1], points[1:]), axis=1))
+    left = overlay(segments)
+    chains: list[FloatArray] = []
+    is_whole, is_gone = np.asarray(shapely.equals_exact(segments, left)), np.asarray(shapely.is_empty(left))
+    breaks = np.flatnonzero((is_whole[1:] != is_whole[:-1]) | ~is_whole[1:]) + 1
+    for first, last in pairwise([0, *breaks.tolist(), len(left)]):
+        if is_whole[first]:
+            chains.append(points[first : last + 1])
+        elif not is_gone[first]:
+            chains += _along(points[first], left[first])
+    joined: list[list[FloatArray]] = []
+    for chain in chains:
+        if joined and np.array_equal(joined[-1][-1][-1], chain[0]):
+            joined[-1].append(chain[1:])
+        else:
+            joined.append([chain])
+    return [shapely.LineString(np.concatenate(parts)) for parts in joined]
+
+
+def _along(start: FloatArray, left: BaseGeometry) -> list[FloatArray]:
+    """The parts of a segment that begins there, in its direction."""
+    parts = [part for part in shapely.get_parts(left) if shapely.get_dimensions(part) == 1 and not part.is_empty]
+    ends = [sorted(shapely.get_coordinates(part), key=lambda end: float(np.hypot(*(end - start)))) for part in parts]
+    return [np.array(part) for part in sorted(ends, key=lambda part: float(np.hypot(*(part[0] - start))))]
 
 
 def _moved(region: BaseGeometry, affine: FloatArray) -> BaseGeometry:

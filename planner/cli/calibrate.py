@@ -51,8 +51,8 @@ def calibrate(arguments: list[str]) -> int:
     options = parser.parse_args(arguments)
     _check(options)
 
-    from planner.arms.arm_file import load_arm
-    from planner.arms.arm_text import arm_toml
+    from planner.arms.arm_edit import edited
+    from planner.arms.arm_file import arm_file_text, load_arm
     from planner.error_model.calibration.calibrate import calibrate as calibrated_by
     from planner.error_model.calibration.files import read_marks, read_record
     from planner.error_model.calibration.sheets import Sheet
@@ -65,11 +65,9 @@ def calibrate(arguments: list[str]) -> int:
         for record, marks in zip(options.record, options.marks, strict=True)
     ]
     found: Calibrated = calibrated_by(arm, sheets)
-    remarks = [
-        f"{arm.name} as calibrated from {found.arm.accuracy.marks if found.arm.accuracy else 0} marks by plan "
-        "calibrate."
-    ]
-    text = arm_toml(found.arm, remarks)
+    marks = found.arm.accuracy.marks if found.arm.accuracy else 0
+    remark = f"{arm.name} as calibrated from {marks} marks by plan calibrate."
+    text = edited(arm_file_text(options.arm), arm, found.arm, remark)
     prediction = expected(text)
     with written_aside(options.output) as file:
         cast("IO[str]", file).write(text)

@@ -19,50 +19,18 @@ commands, one a line, # begins a comment:
   joint NAME|NUMBER   choose a joint
   move DEG            turn it by so much (mm for a slide)
   to DEG              turn it to there
-  reverse             it turned the wrong way: its direction is the other one
+  reverse             it turned the wrong way: its direction is the other one, and it stands where it did
   zero [DEG]          it stands at zero now, or at DEG
   low, high           it goes no further than where it stands now
+  park                it is parked as it stands now
   pen up, pen down    straight up by the lift height, and back
   card [MM]           the pen just holds a card on the paper (0.76 mm thick): tells the paper's height
   show                pulses, angles and limits
   save                write the arm file
-  quit                leave; what was not saved is lost
+  quit                leave; the arm holds, and what was not saved is lost
 
 keys: 1 to 9 choose, + and - move by a step, [ and ] halve and double it, r reverse, z zero, l and h low and high,
-u and d pen up and down, c card, s save, q or Ctrl-C quit"""
-
-_KEYS = {
-    "r": "reverse",
-    "z": "zero",
-    "l": "low",
-    "h": "high",
-    "u": "pen up",
-    "d": "pen down",
-    "c": "card",
-    "s": "save",
-    "q": "quit",
-    " ": "show",
-}
-
-
-class Keys:
-    """Keys to commands. step: deg or mm."""
-
-    def __init__(self, step: float = 1.0) -> None:
-        self.step = step
-
-    def command(self, key: str) -> str | None:
-        """None where the key says nothing, or only changes the step."""
-        match key:
-            case "[" | "]":
-                self.step = min(max(self.step * (2.0 if key == "]" else 0.5), 0.125), 16.0)
-                return None
-            case "+" | "=" | "-":
-                return f"move {-self.step if key == '-' else self.step:g}"
-            case _ if key.isascii() and key.isdigit() and key != "0":
-                return f"joint {key}"
-            case _:
-                return _KEYS.get(key)
+p park, u and d pen up and down, c card, space show, s save, q quit, : any command, x or Esc or Ctrl-C stop at once"""
 
 
 def carry_out(command: str, jogging: Jogging, save: Callable[[], None]) -> bool:
@@ -86,6 +54,8 @@ def carry_out(command: str, jogging: Jogging, save: Callable[[], None]) -> bool:
             jogging.stands_at(_number(position))
         case ["low" | "high" as end]:
             jogging.limit(upper=end == "high")
+        case ["park"]:
+            jogging.park_here()
         case ["pen", "up"]:
             jogging.pen_up()
         case ["pen", "down"]:

@@ -6,8 +6,10 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from planner.cli.files import input_file, output_file
+from planner.cli.output import check_target
 from planner.cli.parser import Parser
-from planner.cli.terminal import print_lines
+from planner.cli.terminal import print_summary
 from planner.errors import UsageError
 
 if TYPE_CHECKING:
@@ -22,26 +24,47 @@ arm with the errors that its file leaves open, slack taken up and lag led as pla
 _EPILOG = """\
 examples:
   plan predict traj.csv --arm my_arm_2.toml
-  plan predict traj.csv --arm my_arm_2.toml --json"""
+  plan predict traj.csv --arm my_arm_2.toml --json
+  plan predict traj.csv --plot expected.png"""
 
 
 def predict(arguments: list[str]) -> int:
     """Predict one trajectory. Errors: PlannerError."""
     parser = Parser("plan predict", _DESCRIPTION, _EPILOG)
-    parser.add_argument("trajectory", type=Path, metavar="traj.csv")
+    parser.add_argument("trajectory", type=input_file, metavar="traj.csv", help="- for standard input")
     parser.add_argument("--arm", metavar="NAME|FILE", help="the arm (default: the one in the trajectory)")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of what is random (default: %(default)s)")
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+    parser.add_argument(
+        "--plot",
+        type=output_file,
+        metavar="FILE",
+        help="also draw it: the lines with the band that 95 of 100 arms stay in, where ink may be missing, a map of "
+        "the error over the paper, and what it comes from; .png, .svg or .pdf",
+    )
     options = parser.parse_args(arguments)
     if options.seed < 0:
         raise UsageError(f"--seed {options.seed}: seeds are 0 or more")
+    if options.plot:
+        from planner.plots.figure_file import picture_format
+
+        picture_format(options.plot)
+        check_target(options.plot, options.trajectory)
 
     from planner.arms.arm_file import load_arm
     from planner.trajectory import read_trajectory
 
     trajectory = read_trajectory(options.trajectory)
-    figures = prediction_of(load_arm(options.arm or trajectory.arm), trajectory, options.trajectory, options.seed)
-    print_lines([json.dumps(figures.as_dict(), indent=2)] if options.json else figures.lines())
+    arm = load_arm(options.arm or trajectory.arm)
+    figures = prediction_of(arm, trajectory, options.trajectory, options.seed)
+    if options.plot:
+        from planner.plots.expected import plot_expected
+        from planner.plots.figure_file import save_figure
+
+        heading = trajectory.drawing or "trajectory"
+        save_figure(plot_expected(figures, heading, f"on {arm.name}: {figures.summary()}"), options.plot)
+    lines = [json.dumps(figures.as_dict(), indent=2)] if options.json else figures.lines()
+    print_summary(lines, *filter(None, [options.plot]))
     return 0
 
 

@@ -1,4 +1,4 @@
-"""`plan run`: one run at a time draws a trajectory, and one run at a time uses a port."""
+"""One run at a time draws a trajectory, and one process at a time uses a port."""
 
 from __future__ import annotations
 
@@ -22,11 +22,19 @@ def one_at_a_time(options: argparse.Namespace) -> Iterator[None]:
     """
     by = f" by port {options.port}" if options.port else " on a simulated arm"
     journal = claim_of_journal(journal_of(options)) if is_kept(options.trajectory) else None
-    port = claim_of_port(options.port) if options.port and options.port != _LOOP else None
     with (
         _claimed(journal, f"drawing it{by}", UsageError, f"{options.trajectory} is being drawn by another run"),
-        _claimed(port, f"drawing {options.trajectory}", HardwareError, f"{options.port}: another run has it"),
+        alone_on(options.port, f"drawing {options.trajectory}"),
     ):
+        yield
+
+
+@contextmanager
+def alone_on(port: str | None, doing: str) -> Iterator[None]:
+    """No other process plays or jogs by the same port until this ends; None for a simulated arm, which is at none.
+    `doing` is what another process reads about this one. Errors: HardwareError, naming the process that does."""
+    path = claim_of_port(port) if port and port != _LOOP else None
+    with _claimed(path, doing, HardwareError, f"{port}: another run has it"):
         yield
 
 

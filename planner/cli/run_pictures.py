@@ -47,7 +47,7 @@ def save_pictures(
             from planner.plots.figure_file import save_figure
 
             heading = job.trajectory.drawing or "trajectory"
-            save_figure(plot_drawing_error(wanted, drawn, heading, f"drawn on {job.arm.name}, {text}"), target)
+            save_figure(plot_drawing_error(wanted, drawn, heading, f"drawn on {job.arm.name}: {text}"), target)
     return [f"what was drawn is {text}"]
 
 

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from hardware.clock import Clock, InstantClock, WallClock
+from hardware.compensation.servo_values import own_calibration
 from hardware.drivers.driver import Driver
-from hardware.drivers.table import MEASURE_POSITIONS, MUJOCO, SIMULATED, calibration_of, make_driver
+from hardware.drivers.table import MEASURE_POSITIONS, MUJOCO, SIMULATED, make_driver
 from hardware.motion.slow_transfer import in_words
 from hardware.playback.journal_entry import Entry
 from hardware.playback.observer import Observer, Progress
@@ -20,6 +21,7 @@ from hardware.port import Line
 from hardware.simulation.simulated_arm import Recording, Servos, SimulatedArm
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
+from planner.arms.usual_servos import describes_servos, with_usual_servos
 from planner.cli.controls import KEYS, Controls, controls
 from planner.cli.run_journal import RunJournal
 from planner.cli.terminal import print_note, print_warnings, progress
@@ -44,17 +46,20 @@ class Rig:
 
 def true_arm_of(options: argparse.Namespace, arm: Arm) -> Arm:
     """What real servos of the simulated arm move. Errors: PlannerError."""
-    if options.servos == "ideal" or calibration_of(SIMULATED, arm) is None:
+    if options.servos == "ideal":
         return arm
     if not options.true_arm:
-        return random_arm(arm, options.seed or 0)
+        return random_arm(with_usual_servos(arm), options.seed or 0)
     true_arm = load_arm(options.true_arm)
     if true_arm.column_names != arm.column_names:
         raise UsageError(
             f"--true-arm {options.true_arm} has the joints {', '.join(true_arm.column_names)}; arm '{arm.name}' has "
             f"{', '.join(arm.column_names)}"
         )
-    return true_arm
+    if describes_servos(true_arm):
+        own_calibration(arm)  # which says what the file lacks: pulses for other servos would mean nothing to these
+        return true_arm
+    return true_arm if describes_servos(arm) else with_usual_servos(true_arm)
 
 
 def set_up(options: argparse.Namespace, arm: Arm, true_arm: Arm) -> Rig:
@@ -93,15 +98,16 @@ def play_out(
 def _simulated(options: argparse.Namespace, arm: Arm, true_arm: Arm, clock: Clock) -> SimulatedArm | MujocoArm | None:
     if options.driver == SIMULATED:
         servos = Servos(options.servos)
-        if servos is Servos.REAL and calibration_of(SIMULATED, arm) is None:
+        if servos is Servos.IDEAL:
+            return SimulatedArm(arm, clock)
+        if not describes_servos(arm):
             print_warnings(
                 [
-                    f"the file of arm '{arm.name}' does not describe the servos of all its joints: they "
-                    "lag behind, without dead band, backlash and resolution"
+                    f"the file of arm '{arm.name}' does not describe the servos of all its joints: servos of a usual "
+                    "kind stand in for them"
                 ]
             )
-            servos = Servos.LAGGING
-        return SimulatedArm(arm, clock, servos, true_arm)
+        return SimulatedArm(with_usual_servos(arm), clock, servos, true_arm)
     if options.driver == MUJOCO:
         from hardware.simulation.mujoco_arm import MujocoArm
 

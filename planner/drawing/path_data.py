@@ -35,7 +35,13 @@ _ARGUMENTS = {
 # A line may repeat its letter: where there are millions of commands, most are these.
 _LINES = {letter: re.compile(rf"(?:{letter}\s*)?" + 2 * _NUMBER) for letter in "Ll"}
 _ROUNDING = 1e-13
+CURVE_LIMIT = 2_500_000
+"""Of a whole drawing, and so of each path."""
 Handle = tuple[float, float]
+
+
+class TooManyCurves(Exception):
+    """A path of more lines and curves than the limit, arcs counted as the curves that they become."""
 
 
 def has_unusable_numbers(data: str) -> bool:
@@ -52,7 +58,8 @@ def parse_path(data: str) -> list[Subpath]:
     """The subpaths of path data, empty where it begins with an error.
 
     Every segment is a curve, those of zero length too; a subpath that `Z` closes ends with the closing one. An `M` with
-    nothing after it is one curve of four equal points whose end is no vertex: it has a place and is not drawn.
+    nothing after it is one curve of four equal points whose end is no vertex: it has a place and is not drawn. Errors:
+    TooManyCurves.
     """
     return _Reader(data).subpaths()
 
@@ -68,32 +75,31 @@ def parse_points(text: str) -> FloatArray:
 
 @dataclass(slots=True)
 class Curves:
-    """Cubics as they are collected: eight numbers each, with straight lines by their ends alone; where subpaths begin
-    and which of them are closed."""
+    """Cubics as they are collected: eight numbers each; where subpaths begin and which of them are closed."""
 
     flat: array[float] = field(default_factory=lambda: array("d"))
-    is_line: bytearray = field(default_factory=bytearray)
     is_vertex: bytearray = field(default_factory=bytearray)
     starts: list[int] = field(default_factory=list)
     is_closed: list[bool] = field(default_factory=list)
 
     def begin(self) -> None:
         """A new subpath, open so far."""
-        self.starts.append(len(self.is_line))
+        self.starts.append(len(self.is_vertex))
         self.is_closed.append(False)
 
     def line(self, x0: float, y0: float, x1: float, y1: float, is_vertex: bool = True) -> None:
-        self.flat.extend((x0, y0, x0, y0, x1, y1, x1, y1))
-        self.is_line.append(True)
+        across, down = (x1 - x0) / 3.0, (y1 - y0) / 3.0
+        self.flat.extend((x0, y0, x0 + across, y0 + down, x1 - across, y1 - down, x1, y1))
         self.is_vertex.append(is_vertex)
 
     def cubic(self, x0: float, y0: float, rest: tuple[float, ...], is_vertex: bool = True) -> None:
         self.flat.extend((x0, y0, *rest))
-        self.is_line.append(False)
         self.is_vertex.append(is_vertex)
 
     def cubics(self, x0: float, y0: float, curves: list[Cubic], end: tuple[float, float]) -> None:
         """Consecutive cubics, of which the last one ends exactly at `end`, and alone in a vertex."""
+        if len(self.is_vertex) > CURVE_LIMIT:
+            raise TooManyCurves
         for curve in curves[:-1]:
             self.cubic(x0, y0, curve, is_vertex=False)
             x0, y0 = curve[4:]
@@ -104,11 +110,6 @@ class Curves:
         if not self.starts:
             return []
         curves: FloatArray = np.frombuffer(self.flat, dtype=np.float64).reshape(-1, 4, 2)
-        lines: BoolArray = np.frombuffer(self.is_line, dtype=np.bool_)
-        third = (curves[:, 3] - curves[:, 0]) / 3.0
-        third[~lines] = 0.0
-        curves[:, 1] += third
-        curves[:, 2] -= third
         curves.setflags(write=False)
         vertices: BoolArray = np.frombuffer(bytes(self.is_vertex), dtype=np.bool_)
         ends = [*self.starts[1:], len(curves)]
@@ -134,15 +135,16 @@ class _Reader:
         while match := _COMMAND.match(self._data, at):
             if not letter and match[1] not in "Mm":
                 break
-            letter, at = match[1], match.end()
+            letter, start = match[1], match.end()
             if letter in "Zz":
                 self._close()
-            elif letter in "Ll":
-                at = self._lines(at, letter)
-            else:
-                at = self._segments(at, letter)
-                if letter in "Mm":
-                    at = self._lines(at, "L" if letter == "M" else "l")
+                at = start
+                continue
+            at = self._lines(start, letter) if letter in "Ll" else self._segments(start, letter)
+            if at == start:
+                break
+            if letter in "Mm":
+                at = self._lines(at, "L" if letter == "M" else "l")
         self._end_lone_move()
         return self._curves.subpaths()
 
@@ -161,12 +163,13 @@ class _Reader:
             if is_relative:
                 x += before_x
                 y += before_y
-            flat.extend((before_x, before_y, before_x, before_y, x, y, x, y))
+            across, down = (x - before_x) / 3.0, (y - before_y) / 3.0
+            flat.extend((before_x, before_y, before_x + across, before_y + down, x - across, y - down, x, y))
+            if len(flat) > 8 * CURVE_LIMIT:
+                raise TooManyCurves
             at = match.end()
             match = pattern.match(data, at)
-        n_lines = (len(flat) - n_before) // 8
-        self._curves.is_line.extend(b"\1" * n_lines)
-        self._curves.is_vertex.extend(b"\1" * n_lines)
+        self._curves.is_vertex.extend(b"\1" * ((len(flat) - n_before) // 8))
         self._x, self._y, self._handle_of = x, y, ""
         return at
 
@@ -216,7 +219,7 @@ class _Reader:
     def _close(self) -> None:
         self._is_lone = False
         reach = abs(self._start_x) + abs(self._start_y) + abs(self._x) + abs(self._y)
-        if self._curves.starts[-1] < len(self._curves.is_line) and (
+        if self._curves.starts[-1] < len(self._curves.is_vertex) and (
             abs(self._x - self._start_x) + abs(self._y - self._start_y) <= _ROUNDING * reach
         ):
             # What comes back to its start by sums of relative steps is there but for rounding.

@@ -6,15 +6,16 @@ and a smooth error of place and height all over the paper, as large as the calib
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from planner.arms.arm import Arm
 from planner.arms.slack import FRAME_S, delays_s, half_slack, leads_s
-from planner.arrays import FloatArray, IntArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.error_model.believed import believed
 from planner.error_model.calibration.parameters import SLACK_SD, Parameters
+from planner.error_model.cause import Cause, differing_lags, left_open, slack_of, unmeasured
 from planner.error_model.chain import tips
 from planner.error_model.model import Standing
 
@@ -26,6 +27,7 @@ _LAG_SPREAD = 0.25
 _WAVES = 8
 _WAVE_MM = 70.0
 _WITHIN_S = 0.3
+_WORTH_A_WORD_MM = 0.005
 _CHOSEN = 200
 """Configurations from which the errors of an arm that was never calibrated are told."""
 
@@ -40,19 +42,28 @@ class Played:
     rate_hz: float
 
 
-@dataclass(frozen=True, slots=True)
-class Cause:
-    """What costs how much: mm that the error would be less, in quadrature, without it."""
+@dataclass(frozen=True, eq=False, slots=True)
+class Along:
+    """What is expected along the lines, at the n samples that draw.
 
-    name: str
-    mm: float
+    meant_mm: (n, 2) on the paper. stroke: (n,). off_mm: (n,) distance from the line, rms over the arms. missing: (n,)
+    share of the arms that leave no ink there. one_mm: (n, 2) where the pen of one of the arms goes. one_inks: (n,)
+    whether it leaves ink.
+    """
+
+    meant_mm: FloatArray
+    stroke: IntArray
+    off_mm: FloatArray
+    missing: FloatArray
+    one_mm: FloatArray
+    one_inks: BoolArray
 
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
     """rms_mm, p95_mm: distance of ink from the lines that are meant, over the time that the pen draws. rms_interval_mm:
     95 of 100 arms. missing_share: of that time with the pen more than INK_MM above the paper; crushed_share: as far
-    below. causes: the dearest first."""
+    below. causes: the dearest first. along: the same sample by sample."""
 
     rms_mm: float
     p95_mm: float
@@ -60,6 +71,7 @@ class Prediction:
     missing_share: float
     crushed_share: float
     causes: tuple[Cause, ...]
+    along: Along = field(compare=False, repr=False)
 
     def as_dict(self) -> dict[str, object]:
         return {
@@ -68,8 +80,15 @@ class Prediction:
             "rms_interval_mm": list(self.rms_interval_mm),
             "missing_share": self.missing_share,
             "crushed_share": self.crushed_share,
-            "causes": [{"cause": cause.name, "mm": cause.mm} for cause in self.causes],
+            "causes": [{"cause": cause.name, "mm": cause.mm, "cure": cause.cure} for cause in self.causes],
         }
+
+    def summary(self) -> str:
+        low, high = self.rms_interval_mm
+        return (
+            f"off by {self.rms_mm:.2f} mm rms ({low:.2f} to {high:.2f}), {self.p95_mm:.2f} mm for 95 %; "
+            f"{100 * self.missing_share:.1f} % of the ink missing"
+        )
 
     def lines(self) -> list[str]:
         low, high = self.rms_interval_mm
@@ -78,7 +97,7 @@ class Prediction:
             f"less than {self.p95_mm:.2f} mm",
             f"ink missing: {100 * self.missing_share:.1f} %; pressed more than {INK_MM:g} mm too deep: "
             f"{100 * self.crushed_share:.1f} %",
-            *(f"{cause.name} costs {cause.mm:.2f} mm" for cause in self.causes),
+            *(cause.text() for cause in self.causes if cause.mm >= _WORTH_A_WORD_MM),
         ]
 
 
@@ -93,15 +112,24 @@ def predicted(arm: Arm, played: Played, seed: int = 0) -> Prediction:
     drawn = played.stroke >= 0
     off = line.distances(whole)[:, drawn]
     height = whole[:, drawn, 2]
+    missing = height > INK_MM
     per_arm = np.sqrt((off**2).mean(axis=1))
     low, high = np.percentile(per_arm, (2.5, 97.5)).tolist()
     return Prediction(
         float(np.sqrt((off**2).mean())),
         float(np.percentile(off, 95)),
         (low, high),
-        float((height > INK_MM).mean()),
+        float(missing.mean()),
         float((height < -INK_MM).mean()),
-        _causes(arm, played, arms, line, float((off**2).mean())),
+        _causes(arm, played, arms, line),
+        Along(
+            meant_mm[drawn, :2],
+            played.stroke[drawn],
+            np.sqrt((off**2).mean(axis=0)),
+            missing.mean(axis=0),
+            whole[0, drawn, :2],
+            ~missing[0],
+        ),
     )
 
 
@@ -199,33 +227,34 @@ def _field(places_mm: FloatArray, sd_mm: FloatArray, random: np.random.Generator
     return scaled
 
 
-def _causes(arm: Arm, played: Played, arms: _Arms, line: _Line, square: float) -> tuple[Cause, ...]:
-    """What each cause adds to the mean square, with all others as they are."""
+def _causes(arm: Arm, played: Played, arms: _Arms, line: _Line) -> tuple[Cause, ...]:
+    """What each cause adds to the mean square: all that is there at rest to the whole, and each of the others to what
+    is there without that, in which it would be lost."""
     drawn = played.stroke >= 0
-
-    def less(sent: FloatArray, without: _Arms) -> float:
-        tip_mm = _tips(arm, without.play(replace(played, sent=sent))) + without.fields
-        return float(np.sqrt(max(square - (line.distances(tip_mm)[:, drawn] ** 2).mean(), 0.0)))
-
     few = replace(arms, **{key: getattr(arms, key)[: _PLAYS // 4] for key in ("slack", "lag_s", "phase_s", "fields")})
-    tip_mm = _tips(arm, few.play(played)) + few.fields
-    square = float((line.distances(tip_mm)[:, drawn] ** 2).mean())
+
+    def square(those: _Arms, sent: FloatArray) -> float:
+        tip_mm = _tips(arm, those.play(replace(played, sent=sent))) + those.fields
+        return float((line.distances(tip_mm)[:, drawn] ** 2).mean())
+
+    def difference(whole: float, less: float) -> float:
+        return float(np.sqrt(max(whole - less, 0.0)))
+
+    moving = replace(few, fields=0 * few.fields)
+    while_moving = square(moving, played.sent)
+    at_rest_mm = difference(square(few, played.sent), while_moving)
+    alike = replace(moving, lag_s=np.broadcast_to(moving.lag_s.mean(axis=1, keepdims=True), moving.lag_s.shape))
     found = [
-        Cause("what is not known of the arm at rest", less(played.sent, replace(few, fields=0 * few.fields))),
-        Cause(
-            "that servos lag differently",
-            less(
-                played.sent, replace(few, lag_s=np.broadcast_to(few.lag_s.mean(axis=1, keepdims=True), few.lag_s.shape))
-            ),
-        ),
+        unmeasured(at_rest_mm) if arm.accuracy is None else left_open(at_rest_mm, arm.accuracy.marks),
+        differing_lags(difference(while_moving, square(alike, played.sent))),
     ]
     shift = leads_s(arm, 1 / played.rate_hz) * played.rate_hz
     rows = np.arange(len(played.meant))
     for k, joint in enumerate(arm.joints):
-        if not few.slack[:, k].any():
+        if not moving.slack[:, k].any():
             continue
-        sent, slack = played.sent.copy(), few.slack.copy()
+        sent, slack = played.sent.copy(), moving.slack.copy()
         sent[:, k] = np.interp(rows + shift[k], rows, played.meant[:, k])
         slack[:, k] = 0.0
-        found.append(Cause(f"slack of {joint.name}", less(sent, replace(few, slack=slack))))
+        found.append(slack_of(joint.name, difference(while_moving, square(replace(moving, slack=slack), sent))))
     return tuple(sorted(found, key=lambda cause: -cause.mm))

@@ -21,7 +21,7 @@ def plot_drawing_error(
     wanted: Sequence[FloatArray], drawn: Sequence[FloatArray], heading: str, remark: str, look: Look = USUAL
 ) -> Figure:
     """Lines (n, 2) in arm millimetres: on the left those wanted, on the right those drawn over those wanted."""
-    low, high = view_mm([*wanted, *drawn], None)
+    low, high = view_mm([*wanted, *drawn], None, base=False)
     colours = look.colours
     layers = [
         ("wanted", [("wanted", wanted, colours.wanted, 1.0)]),
@@ -36,11 +36,12 @@ def plot_drawing_error(
             place_axes(axes, low, high, width, colours)
             axes.set_title(title, loc="left")
             for label, lines, color, thickness in lines_of:
-                _lines(axes, lines, label, color, thickness)
+                draw_lines(axes, lines, label, color, thickness)
         return sheet.finish(heading, remark, room=_TITLE)
 
 
-def _lines(axes: Axes, lines: Sequence[FloatArray], label: str, color: str, width: float) -> None:
+def draw_lines(axes: Axes, lines: Sequence[FloatArray], label: str, color: str, width: float) -> None:
+    """Lines (n, 2) in arm millimetres, and taps as dots, on axes as seen from behind the base."""
     gap = np.full((1, 2), np.nan)
     is_tap = [np.ptp(line, axis=0).max() <= _TAP_MM for line in lines]
     joined = np.concatenate([gap, *(part for line in lines for part in (line, gap))])

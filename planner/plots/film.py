@@ -73,7 +73,7 @@ class Film:
             (side_high[0] - side_low[0]) * em_per_mm,
             (side_high[1] - side_low[1]) * em_per_mm,
         )
-        place_axes(above, low, high, width, colours)
+        place_axes(above, low, high, width, colours, base_mm=(float(probes[0, 0, 0]), float(probes[0, 0, 1])))
         if reach_mm is not None:
             above.add_patch(half_ring(reach_mm, colours))
         if len(corners):

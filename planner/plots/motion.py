@@ -49,7 +49,8 @@ class Motion:
         return np.minimum(samples, self.trajectory.n_samples - 1)
 
     def nodes_mm(self, times_s: FloatArray) -> FloatArray:
-        """(n, n_nodes, 3) corners of the arm from the base to the tip, joints moving evenly between samples."""
+        """(n, n_nodes, 3) corners of the arm from the base to the tip, in the paper's frame. Joints move evenly between
+        samples."""
         at = np.clip(times_s * self.trajectory.rate_hz, 0, self.trajectory.n_samples - 1)
         before = np.minimum(np.floor(at).astype(np.int64), max(self.trajectory.n_samples - 2, 0))
         after = np.minimum(before + 1, self.trajectory.n_samples - 1)
@@ -111,17 +112,18 @@ def motion_of(
 
 
 def seen_from_the_side(nodes_mm: FloatArray) -> FloatArray:
-    """(n, n_nodes, 2) distance from the base along the bearing of the tip, and height, of nodes (n, n_nodes, 3): an
-    arm that turns about its base is seen square on."""
-    bearing = np.arctan2(nodes_mm[:, -1, 1], nodes_mm[:, -1, 0])[:, np.newaxis]
-    along = nodes_mm[..., 0] * np.cos(bearing) + nodes_mm[..., 1] * np.sin(bearing)
+    """(n, n_nodes, 2) distance from the base along the bearing of the tip, and height, of nodes (n, n_nodes, 3), the
+    first of which is the base: an arm that turns about its base is seen square on."""
+    from_base = nodes_mm[..., :2] - nodes_mm[:, :1, :2]
+    bearing = np.arctan2(from_base[:, -1, 1], from_base[:, -1, 0])[:, np.newaxis]
+    along = from_base[..., 0] * np.cos(bearing) + from_base[..., 1] * np.sin(bearing)
     seen: FloatArray = np.stack((along, nodes_mm[..., 2]), axis=-1)
     return seen
 
 
 def _nodes(arm: Arm, joints: FloatArray) -> FloatArray:
-    """(n, n_nodes, 3): the base, and for each joint where its axis takes it and where its link ends, of all those that
-    ever differ from the one before."""
+    """(n, n_nodes, 3) in the paper's frame: the base, and for each joint where its axis takes it and where its link
+    ends, of all those that ever differ from the one before."""
     frames = chain_frames(arm, joints)
     nodes = [frames[:, 0, :3, 3]]
     for index, joint in enumerate(arm.joints):
@@ -131,4 +133,6 @@ def _nodes(arm: Arm, joints: FloatArray) -> FloatArray:
             nodes.append(frames[:, index, :3, 3] + travel * frames[:, index, :3, 2])
         if joint.a_mm:
             nodes.append(frames[:, index + 1, :3, 3])
-    return np.stack(nodes, axis=1)
+    T_paper_base = arm.paper.T_paper_base
+    seen: FloatArray = np.stack(nodes, axis=1) @ T_paper_base[:3, :3].T + T_paper_base[:3, 3]
+    return seen

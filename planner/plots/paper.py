@@ -17,6 +17,7 @@ from planner.plots.sheet import Sheet
 
 PAPER_LEFT, PAPER_BOTTOM, PAPER_RIGHT = 5.4, 4.2, 1.8
 """Em around the axes of a paper, for the numbers on them."""
+BASE = "base of the arm"
 _TICK_EM = 5.5  # a label such as -120, with room beside it
 
 
@@ -44,19 +45,29 @@ def paper_panel(
     return axes
 
 
-def view_mm(points: Sequence[FloatArray], reach_mm: tuple[float, float] | None) -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest arm x and y (2,) to show: all points (n, 2), the base and the half ring, and a margin."""
+def view_mm(
+    points: Sequence[FloatArray], reach_mm: tuple[float, float] | None, *, base: bool = True
+) -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest arm x and y (2,) to show: all points (n, 2), the half ring, the base where it is to be seen,
+    and a margin."""
     ring = [] if reach_mm is None else [np.array([[0.0, -reach_mm[1]], [reach_mm[1], reach_mm[1]]])]
-    everything = np.concatenate([*points, *ring, np.zeros((1, 2))])
+    everything = np.concatenate([*points, *ring, np.zeros((1 if base else 0, 2))])
     low, high = np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)
     margin = max(0.03 * float((high - low).max()), 5.0)
     return low - margin, high + margin
 
 
-def place_axes(axes: Axes, low: FloatArray, high: FloatArray, width_em: float, colours: Colours) -> None:
+def place_axes(
+    axes: Axes,
+    low: FloatArray,
+    high: FloatArray,
+    width_em: float,
+    colours: Colours,
+    base_mm: tuple[float, float] = (0.0, 0.0),
+) -> None:
     """Axes as seen from behind the base, with the base marked: arm y grows to the left, arm x upwards.
 
-    width_em: of the axes, so that the ticks get room.
+    width_em: of the axes, so that the ticks get room. base_mm: where the base stands in the paper's frame.
     """
     axes.set_xlim(high[1], low[1])
     axes.set_ylim(low[0], high[0])
@@ -67,15 +78,15 @@ def place_axes(axes: Axes, low: FloatArray, high: FloatArray, width_em: float, c
     axes.set_xlabel("arm y (mm)")
     axes.set_ylabel("arm x (mm)")
     axes.plot(
-        0.0,
-        0.0,
+        base_mm[1],
+        base_mm[0],
         linestyle="none",
         marker="^",
         markersize=float(np.clip(0.12 * width_em, 4, 8)),
         color=colours.ink,
         markeredgewidth=0,
         zorder=4,
-        label="base of the arm",
+        label=BASE,
     )
 
 

@@ -114,7 +114,7 @@ def _redrawn(sheet: Sheet, linear: FloatArray) -> Sheet:
     outlines = tuple(
         replace(outline, beziers=outline.beziers @ back[:2, :2].T + back[:2, 2]) for outline in sheet.drawing.outlines
     )
-    return replace(moved, drawing=replace(sheet.drawing, outlines=outlines))
+    return replace(moved, drawing=replace(sheet.drawing, outlines=outlines, scene=None))
 
 
 def _turn(degrees: float) -> FloatArray:
@@ -168,7 +168,9 @@ def _drawing(change: Callable[[tuple[FloatArray, ...]], list[FloatArray]]) -> Mu
         return replace(
             sheet,
             drawing=replace(
-                sheet.drawing, outlines=tuple(replace(outlines[0], beziers=beziers) for beziers in changed)
+                sheet.drawing,
+                outlines=tuple(replace(outlines[0], beziers=beziers) for beziers in changed),
+                scene=None,
             ),
         )
 

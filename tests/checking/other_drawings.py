@@ -4,8 +4,8 @@ from __future__ import annotations
 
 DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 40" width="60mm" height="40mm" fill="none" '
-    'stroke="black"><path d="M0 0H60V40H0z"/><path d="M10 10C20 0 40 40 50 20"/><path d="M30 20h0"/>'
-    '<path d="M12 30h1"/><path d="M40 35h.1"/></svg>'
+    'stroke="black" stroke-linecap="round"><path d="M0 0H60V40H0z"/><path d="M10 10C20 0 40 40 50 20"/>'
+    '<path d="M30 20h0"/><path d="M12 30h1"/><path d="M40 35h.1"/></svg>'
 )
 """A frame that keeps all of them in the same place, a curve, a tap, and strokes that are short and very short."""
 

@@ -17,13 +17,21 @@ from planner.error_model.calibration.sheets import rows_of_marks
 from planner.error_model.calibration.summary import as_json, lines, warnings
 from planner.error_model.lag import lagged
 from planner.error_model.model import Told, tips_at
-from planner.error_model.prediction import Prediction
+from planner.error_model.prediction import Along, Prediction
 from planner.errors import CalibrationError
 from tests.error_model.conftest import Drawn
 from tests.judge import playing
 from tests.judge.true_arm import TrueArm, random_arm
 
-NOTHING = Prediction(0.0, 0.0, (0.0, 0.0), 0.0, 0.0, ())
+NOTHING = Prediction(
+    0.0,
+    0.0,
+    (0.0, 0.0),
+    0.0,
+    0.0,
+    (),
+    Along(np.empty((0, 2)), np.empty(0, np.int64), np.empty(0), np.empty(0), np.empty((0, 2)), np.empty(0, np.bool_)),
+)
 
 
 def told_for_marks(drawn: Drawn) -> Told:

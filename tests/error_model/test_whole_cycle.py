@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hardware.compensation.servo_values import pulse_calibration
-from planner.arms.arm_file import load_arm
+from planner.arms.arm_file import arm_file_text, load_arm
 from planner.cli import main
 from tests.judge.playing import Record, read_record
 from tests.judge.true_arm import random_arm
@@ -58,6 +58,8 @@ def test_an_arm_that_nobody_has_measured_draws_whole_lines(
     )
     said = capsys.readouterr().out
     assert "joint q5: " in said and "wrote arm2.toml" in said
+    written, remarks = Path("arm2.toml").read_text(), [line for line in arm_file_text(arm).splitlines() if "#" in line]
+    assert len(remarks) > 3 and all(line in written for line in remarks)
     assert main(["drawing.svg", "--arm", "arm2.toml", "-o", "t.csv", "--quiet"]) == 0
     assert "# paper: " in Path("t.csv").read_text()
     assert main(["check", "t.csv", "--drawing", "drawing.svg"]) == 0

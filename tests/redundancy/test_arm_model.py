@@ -15,7 +15,11 @@ from planner.settings import ConfigurationWeights
 from tests.arms.chains import load_once
 
 KEPT = {
-    "drawing/usvg.py": "a program that is compiled once",
+    "drawing/style/cascade.py": "what the names of attributes mean",
+    "drawing/style/colour.py": "what texts mean as colours",
+    "drawing/style/declarations.py": "what texts mean as declarations",
+    "drawing/text/faces.py": "the faces of the package",
+    "drawing/text/families.py": "the fonts of this machine",
     "execution/context.py": "the context that chunks of one plan share in a process",
     "spline.py": "constants",
 }

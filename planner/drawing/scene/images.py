@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 from urllib.parse import unquote_to_bytes
 
 from planner.affine import compose
-from planner.drawing.scene.page import FALLBACK, OwnSize, own_size, size_for_percentages
+from planner.arrays import FloatArray
+from planner.drawing.scene.page import FALLBACK, OwnSize, own_size
 from planner.drawing.scene.place import NESTING_LIMIT, Leaf, Place, Window
 from planner.drawing.scene.references import href
 from planner.drawing.scene.viewport import fitted
-from planner.drawing.scene.walk import Tree, entered, hides_overflow, in_viewport, leaves
+from planner.drawing.scene.walk import Tree, entered, hides_overflow, leaves
 from planner.drawing.source import SIZE_LIMIT_BYTES
 from planner.drawing.style.style import Styles
 from planner.drawing.transforms import Box, translation
@@ -67,47 +68,50 @@ def picture_of(tree: Tree, leaf: Leaf) -> Picture | None:
     tree.work.skipped.update(document.skipped)
     styles = Styles(document)
     root = document.root
-    size = own_size(root, styles.of(root, styles.root(FALLBACK), size_for_percentages(root)))
+    size = own_size(root, styles.of(root, styles.root(FALLBACK), FALLBACK), has_percentages=False)
     box_size = _box_size(width, height, size)
-    # One that gives no size at all is as large as its place: then its own aspect ratio counts, not that of the image.
-    natural = box_size if size.width is None and size.height is None else size.within(box_size)
-    if min(*box_size, *natural) <= 0.0:
+    view_box = size.view_box or (0.0, 0.0, size.width or box_size[0], size.height or box_size[1])
+    if min(*box_size, *view_box[2:]) <= 0.0:
         return None
-    aspect = leaf.element.attributes.get("preserveAspectRatio")
-    to_user = compose(place.to_user, compose(translation(x, y), fitted((0.0, 0.0, *natural), box_size, aspect)))
     clips = place.clips
     if hides_overflow(style):
         clips = (*clips, Window((x, y, *box_size), place.to_user))
     around = Place(
-        to_user,
-        styles.root(natural),
-        natural,
+        compose(place.to_user, translation(x, y)),
+        styles.root(box_size),
+        box_size,
         opacity=place.opacity,
         clips=clips,
         layer=place.layer,
         has_layer=True,
         nesting=place.nesting + 1,
     )
+    # Browsers lay out the picture in all of the box: its own aspect ratio counts, and of the one of the image only
+    # whether it is `none`.
+    is_stretched = size.view_box is None or leaf.element.attributes.get("preserveAspectRatio", "").strip() == "none"
+    aspect = "none" if is_stretched else root.attributes.get("preserveAspectRatio")
     inner = replace(tree, document=document, styles=styles, root=around, document_styles={})
-    return Picture("image", (x, y, *box_size), inner, _shown(inner, natural))
+    return Picture("image", (x, y, *box_size), inner, _shown(inner, view_box, fitted(view_box, box_size, aspect)))
 
 
-def _shown(tree: Tree, size: tuple[float, float]) -> Iterator[Leaf]:
-    """What the outermost `svg` of a picture of some size shows."""
+def _shown(tree: Tree, view_box: Box, fit: FloatArray) -> Iterator[Leaf]:
+    """What the outermost `svg` of a picture shows in its view box."""
     root, around = tree.document.root, tree.root
     style = tree.styles.of(root, around.style, around.viewport)
     if style["display"] != "none":
-        inner = in_viewport(root, style, entered(tree, root, style, around), 0.0, 0.0, *size)
-        if inner is not None:
-            yield from leaves(tree, root.children, inner)
+        inner = entered(tree, root, style, around)
+        inner = replace(inner, to_user=compose(inner.to_user, fit), viewport=view_box[2:])
+        yield from leaves(tree, root.children, inner)
 
 
 def _box_size(width: float | None, height: float | None, size: OwnSize) -> tuple[float, float]:
     """What is not said of the size of an `image` follows from its picture."""
-    if width is not None and height is not None:
-        return width, height
     natural = size.within(_UNKNOWN)
     if width is None and height is None:
         return natural
-    ratio = natural[0] / natural[1] if natural[1] else 0.0
-    return (width, width / ratio if ratio else 0.0) if width is not None else ((height or 0.0) * ratio, height or 0.0)
+    has_ratio = min(natural) > 0.0 and (size.view_box is not None or None not in (size.width, size.height))
+    if width is None:
+        return (height or 0.0) * natural[0] / natural[1] if has_ratio else natural[0], height or 0.0
+    if height is None:
+        return width, width * natural[1] / natural[0] if has_ratio else natural[1]
+    return width, height

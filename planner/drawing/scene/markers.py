@@ -17,6 +17,7 @@ from planner.drawing.transforms import IDENTITY, parse_angle, scaling, translati
 from planner.drawing.xml_tree import Element
 
 Vector = tuple[float, float]
+_NOWHERE = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +41,7 @@ class _Corner:
     @property
     def angle_deg(self) -> float:
         if self.coming is None or self.going is None:
-            return _angle_deg(self.going or self.coming or (0.0, 0.0))
+            return _angle_deg(self.going or self.coming or _NOWHERE)
         first, second = _angle_deg(self.coming), _angle_deg(self.going)
         # Straight back it turns to the left.
         turn = (second - first + 180.0) % 360.0 - 180.0
@@ -77,15 +78,27 @@ def _corners(subpath: Subpath) -> list[_Corner]:
         x, y = subpath.beziers[end, 3].tolist()
         corners.append(_Corner((x, y), (0.0 - backwards[0], 0.0 - backwards[1]), None))
         first = end + 1
-    if subpath.is_closed and len(corners) > 1:
-        corners[0].coming, corners[-1].going = corners[-1].coming, corners[0].going
+    if subpath.is_closed:
+        _close(corners)
     return corners
+
+
+def _close(corners: list[_Corner]) -> None:
+    """At the end of a closed subpath its start follows, and before its start comes its end. Where `Z` has no way to go,
+    as after another one, it goes the way of the start."""
+    start = corners[0]
+    corners[-1].going = start.going
+    for before, corner in zip(corners[-2::-1], corners[:0:-1], strict=True):
+        if corner.at != start.at or corner.coming != _NOWHERE:
+            break
+        corner.coming = before.going = start.going
+    start.coming = corners[-1].coming
 
 
 def _tangent(points: Sequence[Sequence[float]]) -> Vector:
     """The direction in which a cubic starts: towards the first of its points that is elsewhere."""
     x, y = points[0]
-    return next(((u - x, v - y) for u, v in points[1:] if (u, v) != (x, y)), (0.0, 0.0))
+    return next(((u - x, v - y) for u, v in points[1:] if (u, v) != (x, y)), _NOWHERE)
 
 
 def _angle_deg(direction: Vector) -> float:

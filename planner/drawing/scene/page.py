@@ -6,8 +6,6 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from planner.affine import compose
 from planner.arrays import FloatArray
 from planner.drawing.scene.viewport import fitted, parse_view_box
@@ -16,7 +14,7 @@ from planner.drawing.transforms import Box, local_transform
 from planner.drawing.xml_tree import Element
 
 _ABSOLUTE = re.compile(r"\d(?:mm|cm|in|pt|pc|q)\s*$", re.IGNORECASE)
-_SMALLEST, _LARGEST = 1e-6, 1e9
+_SMALLEST, _LARGEST, _LARGEST_PX = 1e-6, 1e9, 1e7
 FALLBACK = (100.0, 100.0)
 """What percentages are of where a document gives neither its size nor a view box."""
 
@@ -48,11 +46,12 @@ class OwnSize:
         return self.view_box is not None or (self.width is not None and self.height is not None)
 
 
-def own_size(root: Element, style: Style, dpi: float = 96.0) -> OwnSize:
+def own_size(root: Element, style: Style, dpi: float = 96.0, has_percentages: bool = True) -> OwnSize:
     """The size of a document. `dpi` is how many pixels, which lengths without a unit are, go to an inch; millimetres
-    and the like stay as long as they are. Percentages are of the view box."""
+    and the like stay as long as they are. Percentages are of the view box; in a picture they say nothing."""
     view_box = parse_view_box(root.attributes.get("viewBox"))
-    width, height = (_length(style, name, view_box is not None, dpi) for name in ("width", "height"))
+    has_percentages = has_percentages and view_box is not None
+    width, height = _length(style, "width", has_percentages, dpi), _length(style, "height", has_percentages, dpi)
     return OwnSize(width, height, view_box)
 
 
@@ -62,9 +61,9 @@ def size_for_percentages(root: Element) -> tuple[float, float]:
     return view_box[2:] if view_box is not None else FALLBACK
 
 
-def _length(style: Style, name: Literal["width", "height"], has_view_box: bool, dpi: float) -> float | None:
+def _length(style: Style, name: Literal["width", "height"], has_percentages: bool, dpi: float) -> float | None:
     text = style[name]
-    if "%" in text and not has_view_box:
+    if "%" in text and not has_percentages:
         return None
     length = style.length(name, "x" if name == "width" else "y")
     if length is not None and _ABSOLUTE.search(text):
@@ -85,11 +84,9 @@ def page_of(root: Element, style: Style, size: OwnSize, extent: tuple[float, flo
     ValueError where a number is no size or place on a page."""
     width, height = size.within(size.view_box[2:] if size.view_box else extent)
     left, top, across, down = size.view_box or (0.0, 0.0, width, height)
-    lengths = np.array([width, height, across, down])
-    if not ((lengths >= _SMALLEST) & (lengths <= _LARGEST)).all() or not max(abs(left), abs(top)) <= _LARGEST:
-        raise ValueError(
-            f"its width, height or viewBox is beyond {_SMALLEST:g} to {_LARGEST:g} (give it the size of a page)"
-        )
+    least, most = min(width, height, across, down), max(width, height)
+    if not (least >= _SMALLEST and most <= _LARGEST_PX and max(across, down, abs(left), abs(top)) <= _LARGEST):
+        raise ValueError("its width, height or viewBox is far too small or too large (give it the size of a page)")
     box = (0.0, 0.0, width, height)
     fit = fitted((left, top, across, down), (width, height), root.attributes.get("preserveAspectRatio"))
     return Page((width, height), compose(local_transform(style, (width, height), lambda: box), fit))

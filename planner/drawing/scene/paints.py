@@ -56,6 +56,9 @@ class _Mixer:
         """A paint of one or more colours, in the mean of them; None where all of them are transparent."""
         if not any(colour.alpha > 0.0 for colour in colours):
             return None
+        if len(colours) == 1:
+            (colour,) = colours
+            return Paint((colour.red, colour.green, colour.blue), self._opacity >= 1.0 and colour.alpha >= 1.0)
         red, green, blue = (
             round(sum(values) / len(colours))
             for values in zip(*((one.red, one.green, one.blue) for one in colours), strict=True)

@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from planner.arrays import FloatArray
+from planner.drawing.path_data import CURVE_LIMIT
 from planner.drawing.style.style import Style
 from planner.drawing.transforms import Box
 from planner.drawing.xml_tree import Element
@@ -13,7 +14,6 @@ from planner.errors import DrawingError
 
 ELEMENT_LIMIT = 250_000
 DEPTH_LIMIT = 500
-CURVE_LIMIT = 2_500_000
 SUBPATH_LIMIT = 250_000
 # Of patterns in markers in masks and so on, each of which is a walk of its own.
 NESTING_LIMIT = 12
@@ -132,4 +132,7 @@ class Work:
             (self.n_curves, CURVE_LIMIT, "lines and curves"),
         ):
             if count > limit:
-                raise DrawingError(self.source, f"more than {limit} {what} (split it into several drawings)")
+                raise self.too_many(limit, what)
+
+    def too_many(self, limit: int, what: str) -> DrawingError:
+        return DrawingError(self.source, f"more than {limit} {what} (split it into several drawings)")

@@ -9,6 +9,7 @@ import numpy as np
 
 from planner.arrays import frozen
 from planner.drawing.options import ReadingOptions
+from planner.drawing.path_data import CURVE_LIMIT, TooManyCurves
 from planner.drawing.scene.boxes import box_of_subpaths
 from planner.drawing.scene.expansion import check_expansion
 from planner.drawing.scene.page import FALLBACK, OwnSize, Page, own_size, page_of, size_for_percentages
@@ -33,15 +34,15 @@ def read_scene(document: Document, options: ReadingOptions) -> Scene:
     work.skipped.update(document.skipped)
     work.skipped.update(styles.skipped)
     size = own_size(root, styles.of(root, styles.root(FALLBACK), size_for_percentages(root)), options.dpi)
+    page = _page(document, styles, size, FALLBACK)
+    tree = Tree(document, styles, options, work, _root_place(root, styles, page), page.user_to_px, {})
     try:
-        page = _page(root, styles, size, FALLBACK)
-        tree = Tree(document, styles, options, work, _root_place(root, styles, page), page.user_to_px, {})
         with np.errstate(over="ignore", invalid="ignore"):  # what overflows is found where it would be drawn
             shapes = Painter(tree).shapes(_shown(tree))
-        if not size.is_known:
-            page = _page(root, styles, size, _far_corner(shapes))
-    except ValueError as error:
-        raise DrawingError(document.source, str(error)) from None
+    except TooManyCurves:
+        raise work.too_many(CURVE_LIMIT, "lines and curves") from None
+    if not size.is_known:
+        page = _page(document, styles, size, _far_corner(shapes))
     mm_per_px = MM_PER_INCH / options.dpi
     width, height = page.size_px
     return Scene(
@@ -49,9 +50,13 @@ def read_scene(document: Document, options: ReadingOptions) -> Scene:
     )
 
 
-def _page(root: Element, styles: Styles, size: OwnSize, extent: tuple[float, float]) -> Page:
+def _page(document: Document, styles: Styles, size: OwnSize, extent: tuple[float, float]) -> Page:
     across = size.within(size.view_box[2:] if size.view_box else extent)
-    return page_of(root, styles.of(root, styles.root(across), across), size, extent)
+    style = styles.of(document.root, styles.root(across), across)
+    try:
+        return page_of(document.root, style, size, extent)
+    except ValueError as error:
+        raise DrawingError(document.source, str(error)) from None
 
 
 def _root_place(root: Element, styles: Styles, page: Page) -> Place:

@@ -7,17 +7,30 @@ order, the style attribute; then what is `!important`, with layers the other way
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from typing import NamedTuple
 
 from cssselect2.parser import SelectorError
 
 from planner.drawing.style import media
-from planner.drawing.style.declarations import Declaration, in_attribute, in_common_attribute, parse_style_attribute
+from planner.drawing.style.declarations import (
+    Declaration,
+    in_attribute,
+    in_common_attribute,
+    is_plain,
+    parse_style_attribute,
+)
 from planner.drawing.style.properties import ATTRIBUTES
 from planner.drawing.style.selectors import Matches, Tree, compiled, subject
 from planner.drawing.style.sheet import UNLAYERED, Layer, Rule
-from planner.drawing.xml_tree import Element
+from planner.drawing.xml_tree import Document, Element
+from planner.errors import DrawingError
+
+WORK_LIMIT = 10_000_000
+"""Steps: a rule tried on an element, a custom property handed down to it, a character of a long value."""
+_STEPS_OF_A_MATCH = 3
+_LONG = 1000
 
 
 class Declared(NamedTuple):
@@ -64,14 +77,16 @@ STYLE_LAYER: Layer = (*UNLAYERED, 1.0)
 class Cascade:
     """The rules that are in force on a page of one size."""
 
-    def __init__(self, root: Element, rules: Sequence[Rule], page: tuple[float, float]) -> None:
+    def __init__(self, document: Document, rules: Sequence[Rule], page: tuple[float, float]) -> None:
+        self._source = document.source
+        self._work = 0
         self._buckets: dict[tuple[str, str], list[tuple[Matches, Rule]]] = {}
-        tree = Tree(root)
+        tree = Tree(document.root)
         for rule in rules:
             if all(media.matches(query, page) for query in rule.conditions):
                 try:
                     entry = compiled(rule.selector, tree), rule
-                except SelectorError:
+                except (SelectorError, RecursionError):
                     continue
                 self._buckets.setdefault(subject(rule.selector), []).append(entry)
         self._known: dict[Element, Said] = {}
@@ -83,16 +98,29 @@ class Cascade:
             found = self._known[element] = self._cascaded(element)
         return found
 
+    def spend(self, n: int) -> None:
+        """Note n steps of work. Errors: DrawingError where they come to more than the limit."""
+        self._work += n
+        if self._work > WORK_LIMIT:
+            raise DrawingError(self._source, "its style sheets ask for too much work (save it as plain SVG)")
+
     def _cascaded(self, element: Element) -> Said:
         tag, attributes = element.tag, element.attributes
         winners = dict(_BY_BROWSER.get(tag, ()) if element.parent is not None else _OUTERMOST)
         known = _presentation_attributes(tag)
         for key in attributes.keys() & known.keys():
+            if len(attributes[key]) > _LONG and known[key] not in ("d", "transform"):
+                self.spend(len(attributes[key]))
             value = _presented(known[key], attributes[key])
             if value is not None:
                 winners[known[key]] = Declared(value, "", ATTRIBUTE_LAYER, winners.get(known[key]))
         rules = sorted(self._matching(element), key=_strength) if self._buckets else []
-        own = parse_style_attribute(attributes["style"]) if "style" in attributes else ()
+        self.spend(_STEPS_OF_A_MATCH * len(rules))
+        own: Sequence[Declaration] = ()
+        if "style" in attributes:
+            if not is_plain(attributes["style"]):
+                self.spend(len(attributes["style"]))
+            own = parse_style_attribute(attributes["style"])
         if not rules and not own:
             return Said(winners, {})
         for rule in rules:
@@ -117,9 +145,12 @@ class Cascade:
         if "class" in attributes:
             keys.extend(("class", name) for name in set(attributes["class"].split()))
         for key in keys:
-            for matches, rule in self._buckets.get(key, ()):
-                if matches(element):
-                    yield rule
+            bucket = self._buckets.get(key, ())
+            self.spend(len(bucket))
+            for matches, rule in bucket:
+                with suppress(RecursionError):  # a selector that nests too deeply matches nothing
+                    if matches(element):
+                        yield rule
 
 
 @lru_cache(256)
@@ -152,7 +183,10 @@ def _keep_attribute(winners: dict[str, Declared], name: str) -> None:
 def _add(winners: dict[str, Declared], given: Sequence[Declaration], layer: Layer, *, is_important: bool) -> None:
     for name, value, important, shorthand in given:
         if important is is_important:
-            winners[name] = Declared(value, shorthand, layer, winners.get(name))
+            over = winners.get(name)
+            if over is not None and over.layer == layer:  # `revert-layer` passes over the whole layer
+                over = over.below
+            winners[name] = Declared(value, shorthand, layer, over)
 
 
 def _strength(rule: Rule) -> tuple[Layer, tuple[int, int, int], int]:

@@ -14,7 +14,7 @@ import tinycss2
 from tinycss2.ast import Node
 
 from planner.drawing.style.properties import ALIASES, PROPERTIES
-from planner.drawing.style.shorthands import SHORTHANDS
+from planner.drawing.style.shorthands import SHORTHANDS, expanded
 from planner.drawing.style.tokens import text_of
 
 WIDE_KEYWORDS = frozenset({"inherit", "initial", "unset", "revert", "revert-layer"})
@@ -22,7 +22,10 @@ _LONGEST_KEYWORD = max(map(len, WIDE_KEYWORDS))
 UNITLESS_IN_STYLE = frozenset({"font-size", "letter-spacing", "word-spacing", "width", "height"})
 """What takes plain numbers in style attributes, which browsers read with the quirks of old pages, but not in sheets."""
 # What is plain enough to be cut at its semicolons and colons; the rest goes to the parser of CSS.
-_PLAIN = re.compile(r"(?:[^'\"\\{}\[\]!@/()]|\([^'\"\\{}\[\]!@/();]*\))*")
+_STRING = r"""(?:'[^'\\;\n]*'|"[^"\\;\n]*")"""
+_PLAIN = re.compile(
+    rf"""(?:[^'"\\{{}}\[\]!@/()]|/(?!\*)|{_STRING}|\((?:[^'"\\{{}}\[\]!@/();]|/(?!\*)|{_STRING})*\))*+"""
+)
 _COMMENT = re.compile(r"/\*.*?(?:\*/|\Z)", re.DOTALL)
 _SUBSTITUTED = re.compile(r"\b(?:var|env|attr)\(", re.IGNORECASE)
 
@@ -37,9 +40,10 @@ class Declaration(NamedTuple):
     shorthand: str = ""
 
 
+@lru_cache(4096)
 def parse_style_attribute(text: str) -> Sequence[Declaration]:
     """The declarations of a `style` attribute in their order."""
-    if not _PLAIN.fullmatch(text):
+    if not is_plain(text):
         return declarations(tinycss2.parse_blocks_contents(text), is_sheet=False)
     found: list[Declaration] = []
     for part in text.split(";"):
@@ -47,6 +51,11 @@ def parse_style_attribute(text: str) -> Sequence[Declaration]:
         if colon:
             found.extend(declared(name.strip(), value.strip(), is_sheet=False))
     return found
+
+
+def is_plain(text: str) -> bool:
+    """Whether a style attribute can be cut at its semicolons and colons, which is fast."""
+    return _PLAIN.fullmatch(text) is not None
 
 
 def declarations(content: Iterable[Node], *, is_sheet: bool = True) -> list[Declaration]:
@@ -69,8 +78,7 @@ def declared(name: str, text: str, is_important: bool = False, is_sheet: bool = 
         return (Declaration(name, text, is_important),)
     name = name.lower()
     name = ALIASES.get(name, name)
-    expand = SHORTHANDS.get(name)
-    if expand:
+    if name in SHORTHANDS:
         return tuple(_expanded(name, text, is_important))
     if has_substitution(text) and name in PROPERTIES:
         return (Declaration(name, text, is_important),)
@@ -79,13 +87,13 @@ def declared(name: str, text: str, is_important: bool = False, is_sheet: bool = 
 
 
 def _expanded(name: str, text: str, is_important: bool) -> Iterable[Declaration]:
-    longhands, expand = SHORTHANDS[name]
+    longhands = SHORTHANDS[name][0]
     if text.lower() in WIDE_KEYWORDS:
         values: Mapping[str, str] = dict.fromkeys(longhands, text.lower())
     elif has_substitution(text):
         return [Declaration(longhand, text, is_important, name) for longhand in longhands]
     else:
-        values = expand(text)
+        values = expanded(name, text)
     return [Declaration(longhand, value, is_important) for longhand, value in values.items()]
 
 
@@ -96,7 +104,10 @@ def valid(name: str, text: str, is_attribute: bool = False) -> str | None:
         return None
     if len(text) <= _LONGEST_KEYWORD and text.lower() in WIDE_KEYWORDS:
         return text.lower()
-    return row.grammar(text, is_attribute)
+    try:
+        return row.grammar(text, is_attribute)
+    except RecursionError:  # functions within functions without end
+        return None
 
 
 def in_attribute(name: str, text: str) -> str | None:

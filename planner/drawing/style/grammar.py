@@ -20,12 +20,12 @@ from planner.drawing.style.units import PLAIN_LENGTH, is_length_unit, kind_of
 
 Grammar = Callable[[str, bool], str | None]
 _ATTRIBUTE_NUMBER = r"[+-]?(?:\d+(?:\.\d+)?|\.\d+)(?:[eE][+-]?\d+)?"
-_SEPARATOR = r"(?:\s*,\s*|\s+|(?=[+\-.]))"
+_SEPARATOR = r"(?:\s*+,\s*+|\s++|(?=[+\-.]))"  # possessive: a long run of blanks is tried once
 
 
 def _transform_call(names: str, counts: Sequence[int]) -> str:
     numbers = "|".join(rf"{_ATTRIBUTE_NUMBER}(?:{_SEPARATOR}{_ATTRIBUTE_NUMBER}){{{count - 1}}}" for count in counts)
-    return rf"(?:{names})\s*\(\s*(?:{numbers})\s*\)"
+    return rf"(?:{names})\s*+\(\s*+(?:{numbers})\s*+\)"
 
 
 _CALL = (
@@ -40,7 +40,7 @@ _CALL = (
     )
     + ")"
 )
-_TRANSFORM_ATTRIBUTE = re.compile(rf"{_CALL}(?:\s*,?\s*{_CALL})*")
+_TRANSFORM_ATTRIBUTE = re.compile(rf"{_CALL}(?:\s*+,?\s*+{_CALL})*+")
 _ANGLE_ARGUMENTS = {"rotate": 1, "skewx": 1, "skewy": 1, "rotatex": 1, "rotatey": 1, "rotatez": 1}
 _LENGTH_ARGUMENTS = {
     "translatex": (1,),
@@ -227,6 +227,8 @@ _length = length()
 _plain = number()
 _scale = number(has_percentage=True)
 _place = length("left right center top bottom")
+_ACROSS, _DOWN = frozenset({"left", "right"}), frozenset({"top", "bottom"})
+_PLACES = _ACROSS | _DOWN | {"center"}
 
 
 def _is_angle(text: str) -> bool:
@@ -289,9 +291,9 @@ def transform_origin(text: str, is_attribute: bool) -> str | None:
     if not 1 <= len(found) <= 3 or None in found:
         return None
     first, second = ([*(part for part in found if part), "center"])[:2]
-    if first in ("top", "bottom") or second in ("left", "right"):
+    if {first, second} <= _PLACES and (first in _DOWN or second in _ACROSS):
         first, second = second, first
-    if first in ("top", "bottom") or second in ("left", "right"):
+    if first in _DOWN or second in _ACROSS:
         return None
     percent = {"left": "0%", "top": "0%", "center": "50%", "right": "100%", "bottom": "100%"}
     return f"{percent.get(first, first)} {percent.get(second, second)}"

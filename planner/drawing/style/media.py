@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import operator
+import math
 import re
 from collections.abc import Callable, Sequence
 
@@ -38,17 +38,11 @@ _WORDS = {
 }
 """Features that are words, and which of them holds: that of a desktop computer."""
 _NOT_SAID = frozenset({"none", "no-preference", None})
-_COMPARISONS: dict[str, Callable[[float, float], bool]] = {
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-    "=": operator.eq,
-}
 _REVERSED = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "="}
+_BOUND = re.compile("(?:-webkit-)?(min-|max-).*")
 _RESOLUTION = re.compile(r"([0-9.]+)(dppx|x|dpi|dpcm)", re.IGNORECASE)
 _PER_DPPX = {"dppx": 1.0, "x": 1.0, "dpi": 1.0 / 96.0, "dpcm": 2.54 / 96.0}
-Test = Callable[[Node], bool]
+Test = Callable[[Node], bool | None]
 
 
 def matches(tokens: Sequence[Node], page: Size) -> bool:
@@ -56,7 +50,10 @@ def matches(tokens: Sequence[Node], page: Size) -> bool:
     queries = by_comma(significant(tokens))
     if queries == [[]]:
         return True
-    return any(_query(query, page) for query in queries)
+    try:
+        return any(_query(query, page) for query in queries)
+    except RecursionError:
+        return False
 
 
 def matches_text(text: str, page: Size) -> bool:
@@ -64,28 +61,30 @@ def matches_text(text: str, page: Size) -> bool:
     return matches(tinycss2.parse_component_value_list(text), page)
 
 
-def condition(tokens: Sequence[Node], test: Test) -> bool:
-    """`not (a)`, `(a) and (b)`, `(a) or (b)`, with `test` for each of (a) and (b)."""
+def condition(tokens: Sequence[Node], test: Test) -> bool | None:
+    """`not (a)`, `(a) and (b)`, `(a) or (b)`, with `test` for each of (a) and (b). None, neither true nor false, where
+    that hangs on what is unknown."""
     parts = significant(tokens)
     if not parts:
-        return False
+        return None
     if is_word(parts[0], "not"):
-        return len(parts) == 2 and not _operand(parts[1], test)
-    result = _operand(parts[0], test)
-    for joint, part in zip(parts[1::2], parts[2::2], strict=False):
-        if is_word(joint, "and"):
-            result = _operand(part, test) and result
-        elif is_word(joint, "or"):
-            result = _operand(part, test) or result
-        else:
-            return False
-    return result
+        negated = _operand(parts[1], test) if len(parts) == 2 else None
+        return None if negated is None else not negated
+    found = [_operand(part, test) for part in parts[::2]]
+    joints = parts[1::2]
+    if len(joints) != len(found) - 1:
+        return None
+    if all(is_word(joint, "and") for joint in joints):
+        return False if False in found else None if None in found else True
+    if all(is_word(joint, "or") for joint in joints):
+        return True if True in found else None if None in found else False
+    return None
 
 
-def _operand(token: Node, test: Test) -> bool:
+def _operand(token: Node, test: Test) -> bool | None:
     if token.type == "() block":
         inner = significant(token.content)
-        if inner and (is_word(inner[0], "not") or inner[0].type == "() block" or inner[0].type == "function"):
+        if inner and (is_word(inner[0], "not") or inner[0].type in ("() block", "function")):
             return condition(inner, test)
     return test(token)
 
@@ -94,29 +93,20 @@ def _query(parts: list[Node], page: Size) -> bool:
     """`not print`, `screen and (min-width: 100px)`, `(a) or (b)`."""
     if not parts:
         return False
-    if parts[0].type == "ident" and (parts[0].lower_value != "not" or (parts[1:2] and parts[1].type == "ident")):
-        is_not = parts[0].lower_value == "not"
-        words = parts[1:] if parts[0].lower_value in ("not", "only") else parts
-        if not words or words[0].type != "ident" or (len(words) > 1 and not is_word(words[1], "and")):
-            return False
-        holds = words[0].lower_value in _TYPES
-        if len(words) > 1:
-            holds = condition(words[2:], lambda token: _feature(token, page)) and holds
-        return holds is not is_not
-    if any(_is_unknown(part) for part in parts):
+    is_typed = parts[0].type == "ident" and not (is_word(parts[0], "not") and not _is_ident(parts[1:2]))
+    if not is_typed:
+        return condition(parts, lambda token: _feature(token, page)) is True
+    words = parts[1:] if parts[0].lower_value in ("not", "only") else parts
+    if not _is_ident(words[:1]) or (len(words) > 1 and not is_word(words[1], "and")):
         return False
-    return condition(parts, lambda token: _feature(token, page))
+    holds: bool | None = words[0].lower_value in _TYPES
+    if holds and len(words) > 1:
+        holds = condition(words[2:], lambda token: _feature(token, page))
+    return holds is not None and holds is not is_word(parts[0], "not")
 
 
-def _is_unknown(token: Node) -> bool:
-    """Whether it names a feature that nobody knows: then its negation does not hold either."""
-    if token.type != "() block":
-        return False
-    inner = significant(token.content)
-    if len(inner) != 1 or inner[0].type != "ident":
-        return False
-    name = inner[0].lower_value
-    return name not in _WORDS and name not in _numbers((1.0, 1.0)) and name not in ("grid", "monochrome")
+def _is_ident(tokens: Sequence[Node]) -> bool:
+    return bool(tokens) and tokens[0].type == "ident"
 
 
 def _numbers(page: Size) -> dict[str, float]:
@@ -138,40 +128,48 @@ def _numbers(page: Size) -> dict[str, float]:
     }
 
 
-def _feature(token: Node, page: Size) -> bool:
-    """`(min-width: 100px)`, `(width >= 100px)`, `(100px < width < 200px)`, `(color)`, `(hover: hover)`."""
+def _feature(token: Node, page: Size) -> bool | None:
+    """`(min-width: 100px)`, `(width >= 100px)`, `(100px < width < 200px)`, `(color)`, `(hover: hover)`; None for a
+    feature that nobody knows."""
     if token.type != "() block":
-        return False
+        return None
     text = text_of(token.content).lower()
     numbers = _numbers(page)
     name, colon, value = (part.strip() for part in text.partition(":"))
+    if colon and name in _WORDS:
+        orientation = "landscape" if page[0] > page[1] else "portrait"
+        return value == (orientation if name == "orientation" else _WORDS[name])
     if colon:
-        if name in _WORDS:
-            holds = "landscape" if page[0] > page[1] else "portrait"
-            return value == (holds if name == "orientation" else _WORDS[name])
-        bound, plain = name[:4], name.replace("min-", "", 1).replace("max-", "", 1)
-        number = _value(value, page)
-        if plain not in numbers or number is None:
-            return False
-        compare = (
-            operator.ge if "min-" in (bound, name[8:12]) else operator.le if "max-" in (bound, name[8:12]) else None
-        )
-        return compare(numbers[plain], number) if compare else abs(numbers[plain] - number) < 1e-9
+        match = _BOUND.fullmatch(name)
+        sign = ">=" if match and "min-" in name else "<=" if match else "="
+        plain = name.replace(match[1], "", 1) if match else name
+        return _range([plain, sign, value], numbers, page)
     parts = [part.strip() for part in re.split(r"(<=|>=|<|>|=)", text)]
-    if len(parts) == 1:
-        return numbers.get(text, 0.0) != 0.0 or (text in _WORDS and _WORDS[text] not in _NOT_SAID)
-    return _range(parts, numbers, page)
+    if len(parts) > 1:
+        return _range(parts, numbers, page)
+    if text in _WORDS:
+        return _WORDS[text] not in _NOT_SAID
+    return numbers[text] != 0.0 if text in numbers else None
 
 
-def _range(parts: list[str], numbers: dict[str, float], page: Size) -> bool:
+def _range(parts: list[str], numbers: dict[str, float], page: Size) -> bool | None:
+    """`width >= 100px` either way round, or `100px < width < 200px`, cut at their signs."""
     if len(parts) == 3 and parts[0] in numbers:
         parts = [parts[2], _REVERSED[parts[1]], parts[0]]
-    name = parts[2]
+    if len(parts) not in (3, 5) or parts[2] not in numbers:
+        return None
     bounds = [(parts[0], parts[1])] + ([(parts[4], _REVERSED[parts[3]])] if len(parts) == 5 else [])
-    if name not in numbers or len(parts) not in (3, 5):
-        return False
-    found = [(_value(text, page), sign) for text, sign in bounds]
-    return all(value is not None and _COMPARISONS[sign](value, numbers[name]) for value, sign in found)
+    values = [_value(text, page) for text, _ in bounds]
+    number = numbers[parts[2]]
+    return all(
+        value is not None and _holds(value, sign, number) for value, (_, sign) in zip(values, bounds, strict=True)
+    )
+
+
+def _holds(value: float, sign: str, number: float) -> bool:
+    if math.isclose(value, number, rel_tol=1e-9):
+        return "=" in sign
+    return value < number if "<" in sign else value > number if ">" in sign else False
 
 
 def _value(text: str, page: Size) -> float | None:

@@ -7,7 +7,8 @@ takes more than a few steps an element, whatever the depth of the tree and the n
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import tinycss2.nth
@@ -17,6 +18,8 @@ from tinycss2.ast import Node
 
 from planner.drawing.xml_tree import SVG_NAMESPACE, Element
 
+_LONGEST = 100
+"""Elements that a selector may name one within another."""
 Matches = Callable[[Element], bool]
 _DYNAMIC = re.compile(
     "active|autofill|blank|buffering|checked|current|default|disabled|focus|focus-visible|focus-within|fullscreen|"
@@ -84,8 +87,25 @@ def _siblings(elements: list[Element]) -> Siblings:
     return Siblings(elements, {element: index for index, element in enumerate(elements)}, index_of_type, n_of_type)
 
 
+def parsed(text: str, namespaces: Mapping[str | None, str]) -> list[parser.Selector]:
+    """The selectors of a list. Errors: SelectorError where one of them is none that browsers understand: then the list
+    as a whole is none."""
+    try:
+        selectors = list(parser.parse(text, namespaces))
+        for selector in selectors:
+            compiled(selector, _NO_TREE)
+    except (AttributeError, RecursionError) as error:  # one that breaks off, or has no end
+        raise SelectorError(text, str(error)) from None
+    return selectors
+
+
 def compiled(selector: parser.Selector, tree: Tree) -> Matches:
-    """Errors: SelectorError for what no browser understands."""
+    """Errors: SelectorError for what no browser understands, and for very long ones."""
+    node, n = selector.parsed_tree, 1
+    while isinstance(node, parser.CombinedSelector):
+        node, n = node.left, n + 1
+    if n > _LONGEST:
+        raise SelectorError("a selector that is too long")
     return _compiled(selector.parsed_tree, tree)
 
 
@@ -102,6 +122,9 @@ def subject(selector: parser.Selector) -> tuple[str, str]:
         elif isinstance(simple, parser.LocalNameSelector):
             found["tag"] = simple.local_name
     return next(((kind, name) for kind, name in found.items() if name), ("", ""))
+
+
+_NO_TREE = Tree(Element("svg", {}, 0))
 
 
 def _compiled(node: object, tree: Tree) -> Matches:
@@ -174,11 +197,20 @@ def _simple(node: object, tree: Tree) -> Matches:
         return _function(node, tree)
     if isinstance(node, parser.RelationalSelector):
         return _has(node, tree)
-    if isinstance(node, parser.NegationSelector | parser.MatchesAnySelector | parser.SpecificityAdjustmentSelector):
-        tests = [_compiled(selector.parsed_tree, tree) for selector in node.selector_list]
-        is_negated = isinstance(node, parser.NegationSelector)
-        return lambda element: any(test(element) for test in tests) is not is_negated
+    if isinstance(node, parser.NegationSelector):
+        negated = [_compiled(selector.parsed_tree, tree) for selector in node.selector_list]
+        return lambda element: not any(test(element) for test in negated)
+    if isinstance(node, parser.MatchesAnySelector | parser.SpecificityAdjustmentSelector):
+        tests = list(_understood(node.selector_list, tree))
+        return lambda element: any(test(element) for test in tests)
     raise SelectorError("unknown selector")
+
+
+def _understood(selectors: Iterable[parser.Selector], tree: Tree) -> Iterator[Matches]:
+    """Those of `:is()`, which passes over what it does not understand."""
+    for selector in selectors:
+        with suppress(SelectorError):
+            yield _compiled(selector.parsed_tree, tree)
 
 
 def _attribute(node: parser.AttributeSelector) -> Matches:
@@ -332,12 +364,23 @@ def _has_one(combinator: str, inner: Matches, tree: Tree) -> Matches:
         return known[element]
 
     def later(element: Element) -> bool:
+        """Whether a sibling after it matches."""
+        if element not in known:
+            result = False
+            for other in reversed(tree.siblings(element).elements):
+                known[other] = result
+                result = result or inner(other)
+        return known[element]
+
+    def following(element: Element) -> bool:
         siblings = tree.siblings(element)
-        following = siblings.elements[siblings.index[element] + 1 :]
-        return any(inner(other) for other in (following[:1] if combinator == "+" else following))
+        index = siblings.index[element] + 1
+        return index < len(siblings.elements) and inner(siblings.elements[index])
 
     if combinator == " ":
         return within
+    if combinator == "+":
+        return following
     if combinator == ">":
         return lambda element: any(inner(child) for child in element.children)
     return later

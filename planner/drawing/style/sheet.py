@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -14,9 +15,14 @@ from tinycss2.ast import Node
 from planner.drawing.style import media
 from planner.drawing.style.declarations import Declaration, declarations, declared
 from planner.drawing.style.properties import PROPERTIES
+from planner.drawing.style.selectors import parsed
 from planner.drawing.style.tokens import by_comma, significant, text_of
 from planner.drawing.xml_tree import Document
+from planner.errors import DrawingError
 
+_TEXT_LIMIT = 4 << 20
+"""Characters of all style sheets together, embedded fonts and pictures aside."""
+_DATA_URL = re.compile(r"""url\(\s*(["']?)data:[^"')]*+\1\s*\)""", re.IGNORECASE)
 _DEPTH_LIMIT = 30
 _SELECTOR_LIMIT = 10_000
 """Characters of a selector: nested rules that repeat their parents would take all memory."""
@@ -57,17 +63,24 @@ class Sheets:
     _layers: dict[tuple[str, ...], int] = field(default_factory=dict)
 
     def read(self, document: Document) -> None:
-        """All `style` elements of a document."""
+        """All `style` elements of a document. Errors: DrawingError where they are too long."""
+        n_characters = 0
         for element in document.root.descendants():
             if element.tag != "style" or not element.content:
                 continue
+            text = _DATA_URL.sub("url()", element.text)
+            n_characters += len(text)
+            if n_characters > _TEXT_LIMIT:
+                raise DrawingError(
+                    document.source, f"its style sheets are longer than {_TEXT_LIMIT} characters (save it as plain SVG)"
+                )
             if element.attributes.get("type", "").strip().lower() not in ("", "text/css"):
                 continue
             query = element.attributes.get("media", "")
             conditions = (tinycss2.parse_component_value_list(query),) if query.strip() else ()
             self._namespaces = {}
             try:
-                self._read(tinycss2.parse_stylesheet(element.text), _Context(conditions))
+                self._read(tinycss2.parse_stylesheet(text), _Context(conditions))
             except RecursionError:
                 self.skipped["style sheet that nests too deeply"] += 1
 
@@ -92,8 +105,8 @@ class Sheets:
         found = tuple(declarations(content))
         if found:
             try:
-                selectors = list(parser.parse(prelude, self._namespaces))
-            except (parser.SelectorError, AttributeError):  # a selector that breaks off
+                selectors = parsed(prelude, self._namespaces)
+            except parser.SelectorError:
                 return
             layer = self._layer_key(context.layer)
             for selector in selectors:
@@ -154,12 +167,12 @@ def _nested(prelude: str, parent: str) -> str:
     return ", ".join(text.replace("&", whole) if "&" in text else f"{whole} {text}" for text in texts)
 
 
-def _is_supported(token: Node) -> bool:
+def _is_supported(token: Node) -> bool | None:
     """Whether `(property: value)` or `selector(...)` of `@supports` is understood here."""
     if token.type == "function" and token.lower_name == "selector":
         try:
-            return bool(list(parser.parse(token.arguments)))
-        except (parser.SelectorError, AttributeError):
+            return bool(parsed(text_of(token.arguments), {}))
+        except parser.SelectorError:
             return False
     if token.type != "() block":
         return False

@@ -81,6 +81,14 @@ def _all(_: str) -> Longhands:
     return {}  # takes nothing but the keywords of every property
 
 
+def expanded(name: str, text: str) -> Longhands:
+    """What the longhands of a shorthand come to: none where its value is invalid."""
+    try:
+        return SHORTHANDS[name][1](text)
+    except RecursionError:
+        return {}
+
+
 SHORTHANDS: dict[str, tuple[tuple[str, ...], Callable[[str], Longhands]]] = {
     "font": (_FONT, _font),
     "marker": (_MARKERS, _marker),

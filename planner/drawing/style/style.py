@@ -12,7 +12,7 @@ from planner.drawing.style.colour import BLACK, NO_PAINT, PaintValue, Rgba, pars
 from planner.drawing.style.declarations import UNITLESS_IN_STYLE, WIDE_KEYWORDS, has_substitution, valid
 from planner.drawing.style.properties import COUNTED, INHERITED, INITIAL, TEXT_ELEMENTS
 from planner.drawing.style.sheet import Sheets
-from planner.drawing.style.shorthands import SHORTHANDS
+from planner.drawing.style.shorthands import expanded
 from planner.drawing.style.tokens import component_values, text_of
 from planner.drawing.style.units import MEDIUM_FONT_PX, Axis, Units, normal_line_height, units_of_page
 from planner.drawing.style.variables import Unresolvable, resolved, substituted
@@ -163,11 +163,11 @@ class Styles:
         sheets.read(document)
         self.skipped: Counter[str] = sheets.skipped
         self._rules = sheets.rules
-        self._root = document.root
+        self._document = document
 
     def root(self, viewport: tuple[float, float]) -> Style:
         """That of what the outermost `svg` inherits from: initial values, with the page as the viewport."""
-        page = _Page(Cascade(self._root, self._rules, viewport))
+        page = _Page(Cascade(self._document, self._rules, viewport))
         return Style(page, None, None, _NOTHING, _NOTHING, _NOTHING, units_of_page(viewport))
 
     def of(self, element: Element, parent: Style, viewport: tuple[float, float]) -> Style:
@@ -207,6 +207,7 @@ def _computed(element: Element, parent: Style, viewport: tuple[float, float]) ->
 
 def _custom_properties(said: Mapping[str, Declared], parent: Style) -> Mapping[str, str]:
     """Those of the parent with those that are said, variables in them replaced."""
+    parent._page.cascade.spend(len(said) + len(parent._variables))
     given = {name: _winner(name, entry, parent) for name, entry in said.items()}
     defined = {name: value for name, value in given.items() if value is not None}
     inherited = {name: value for name, value in parent._variables.items() if name not in given}
@@ -263,7 +264,7 @@ def _substituted(name: str, entry: Declared, variables: Mapping[str, str]) -> st
     except (Unresolvable, RecursionError):
         return None
     if entry.shorthand and text.lower() not in WIDE_KEYWORDS:
-        return SHORTHANDS[entry.shorthand][1](text).get(name)
+        return expanded(entry.shorthand, text).get(name)
     is_quirky = entry.layer == STYLE_LAYER and name in UNITLESS_IN_STYLE
     return valid(name, text, is_attribute=is_quirky or entry.layer == ATTRIBUTE_LAYER)
 

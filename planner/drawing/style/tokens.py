@@ -12,7 +12,12 @@ _BLANK = frozenset({"whitespace", "comment"})
 
 def significant(tokens: Iterable[Node]) -> list[Node]:
     """Without blanks and comments."""
-    return [token for token in tokens if token.type not in _BLANK]
+    return [token for token in tokens if token.type not in _BLANK and not _is_end(token)]
+
+
+def _is_end(token: Node) -> bool:
+    """Whether it only says that the text ends within a string or a url(), which closes them."""
+    return bool(token.type == "error" and token.kind in ("eof-in-string", "eof-in-url"))
 
 
 def component_values(text: str) -> list[Node]:
@@ -41,5 +46,8 @@ def is_word(token: Node, word: str) -> bool:
 
 
 def text_of(tokens: Iterable[Node]) -> str:
-    """Written out, without comments and the blanks around."""
-    return str(tinycss2.serialize([token for token in tokens if token.type != "comment"])).strip()
+    """Written out, without comments and the blanks around; "" for what nests too deeply to be a value of anything."""
+    try:
+        return str(tinycss2.serialize([token for token in tokens if token.type != "comment"])).strip()
+    except RecursionError:
+        return ""

@@ -13,8 +13,8 @@ from planner.drawing.subpath import Subpath
 from planner.drawing.text.context import TextContext
 from planner.drawing.xml_tree import Element
 
-_STEPS = 32
-"""Chords that a curve is measured by."""
+_STEPS, _MOST_CHORDS = 32, 1_000_000
+"""Chords that a curve is measured by, fewer where a path has very many curves."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -82,7 +82,8 @@ def _number(text: str) -> float:
 
 def measured(subpaths: list[Subpath]) -> tuple[FloatArray, FloatArray]:
     """Points along subpaths (n, 2), and the length up to each (n,)."""
-    t = np.linspace(0.0, 1.0, _STEPS + 1)[:, None]
+    n_curves = max(sum(len(subpath.beziers) for subpath in subpaths), 1)
+    t = np.linspace(0.0, 1.0, min(max(_MOST_CHORDS // n_curves, 1), _STEPS) + 1)[:, None]
     basis = np.concatenate(((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3), axis=1)
     points, lengths, total = [], [], 0.0
     for subpath in subpaths:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from hardware.playback.result import End
 from hardware.simulation.mujoco_arm import MujocoArm
 from planner.arms.arm import Arm
 from planner.arms.arm_file import known_arms, load_arm
+from planner.arms.paper_pose import PaperPose
 from planner.errors import HardwareError
 from planner.trajectory import Trajectory
 
@@ -24,13 +26,32 @@ pytestmark = pytest.mark.skipif(
 )
 
 
+PAPER = PaperPose(12.0, -7.0, 3.0, 0.2, -0.1, 0.08)
+
+
+@pytest.mark.parametrize("paper", [PaperPose(), PAPER])
 @pytest.mark.parametrize("name", known_arms())
-def test_its_tip_is_where_the_chain_says(name: str) -> None:
-    arm = load_arm(name)
+def test_its_tip_is_where_the_chain_says(name: str, paper: PaperPose) -> None:
+    arm = replace(load_arm(name), paper=paper)
     simulated = MujocoArm(arm, InstantClock())
     for joints in np.random.default_rng(1).uniform(arm.minimum, arm.maximum, (10, arm.n_joints)):
         simulated.connect(joints)
         np.testing.assert_allclose(simulated.tip_mm, link_nodes_mm(arm, joints[None])[0, -1], atol=1e-6)
+
+
+def test_what_it_weighs_pulls_it_down_as_the_base_stands_not_as_the_paper_lies() -> None:
+    upright = load_arm("drawing_arm")
+    rest = (upright.minimum + upright.maximum) / 2
+    sagged = []
+    for arm in (upright, replace(upright, paper=PAPER)):
+        clock = InstantClock()
+        simulated = MujocoArm(arm, clock)
+        simulated.connect(rest)
+        simulated.send(rest, 0.01)
+        simulated.flush()
+        sagged.append(simulated.recording.positions[-1] - rest)
+    assert np.abs(sagged[0]).max() > 1e-5
+    np.testing.assert_allclose(sagged[1], sagged[0], atol=1e-8)
 
 
 def test_it_follows_a_program_closely_and_remembers_it(arm: Arm, sketch: Trajectory) -> None:

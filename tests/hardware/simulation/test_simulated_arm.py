@@ -119,17 +119,3 @@ def test_servos_on_a_bus_have_dead_band_and_play_too() -> None:
     assert places[0] == pytest.approx(0.0, abs=1e-3)  # within dead band and half the play of 0.5 degrees
     assert places[1] == pytest.approx(3.0 - band_deg - 0.25, abs=0.05)  # to a whole count of 0.09 degrees
     assert places[2] == places[1]
-
-
-def test_without_a_word_on_servos_joints_lag_and_arrive() -> None:
-    scara, clock = load_arm("scara"), InstantClock()
-    rest = (scara.minimum + scara.maximum) / 2
-    simulated = SimulatedArm(scara, clock, Servos.LAGGING)
-    simulated.connect(rest)
-    goal = rest + 0.01
-    simulated.send(goal, 0.01)
-    clock.sleep_until(0.01)
-    simulated.send(goal, 0.01)
-    assert 0.0 < float(simulated.recording.positions[-1][0] - rest[0]) < 0.01
-    simulated.flush()
-    np.testing.assert_allclose(simulated.recording.positions[-1], goal, atol=1e-5)
