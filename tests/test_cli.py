@@ -21,6 +21,7 @@ from planner.cli import EXIT_DEFECT, main
 from planner.cli.plan import plan_parser, settings_of
 from planner.cli.terminal import progress
 from planner.counted import counted
+from planner.drawing.fill_options import FillBy, FillKind, FillOptions, WideStrokes
 from planner.drawing.options import ReadingOptions
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach
 from planner.execution.workers import Workers
@@ -193,6 +194,18 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
                 "2",
                 "--keep-order",
                 "--reverse",
+                "--fill",
+                "cross",
+                "--fill-angle",
+                "30",
+                "--fill-spacing",
+                "1",
+                "--fill-inset",
+                "0.2",
+                "--fill-by",
+                "lightness",
+                "--stroke-width",
+                "passes",
                 "--layers",
                 "1,sky",
                 "--by",
@@ -243,6 +256,7 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
         passes=2,
         keep_order=True,
         reverse=True,
+        fill=FillOptions(FillKind.CROSS, 30.0, 1.0, 0.2, FillBy.LIGHTNESS, WideStrokes.PASSES),
         layers=("1", "sky"),
         by=GroupBy.LAYER,
         pens=(Pen("blue"),),

@@ -213,8 +213,8 @@ def plan_parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
     parser.usage = (
         "plan DRAWING.svg [-o traj.csv] [options]\n"
-        "       plan batch|lines|run|pattern|measure|calibrate|predict|jog|ports|check|plot|compare|fonts|arm|paper"
-        "|estimate|config ..."
+        "       plan batch|lines|run|pattern|measure|calibrate|predict|jog|ports|check ...\n"
+        "       plan plot|compare|fonts|arm|paper|estimate|config ..."
     )
     parser.add_argument(
         "drawing", type=input_file, metavar="DRAWING.svg", help="the drawing, gzipped or not; - for standard input"

@@ -49,9 +49,9 @@ class Drawing:
     user_to_page: FloatArray
     page_mm: tuple[float, float]
     skipped: Mapping[str, int] = field(default_factory=dict)
-    has_page: bool = True
     scene: Scene | None = None
     reading: ReadingOptions = AS_A_BROWSER
+    has_page: bool = True
 
     def notes(self) -> list[str]:
         """What is to be said of it."""

@@ -49,7 +49,7 @@ def read_drawing(
     if not drawn:
         raise DrawingError(source, _nothing_drawable(document, skipped))
     report(_STEPS, _STEPS)
-    return Drawing(source, drawn, scene.user_to_page, scene.page_mm, skipped, scene.has_page, scene, options)
+    return Drawing(source, drawn, scene.user_to_page, scene.page_mm, skipped, scene, options, scene.has_page)
 
 
 def _nothing_drawable(document: Document, skipped: Mapping[str, int]) -> str:

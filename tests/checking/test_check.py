@@ -303,7 +303,7 @@ def test_text_and_json_say_the_same() -> None:
     check_result = check_trajectory(bumped(0, FIRST + 10, 0.2), gantry(), DRAWING)
     lines = check_result.text().splitlines()
     assert len(lines) == len(check_result.findings) + 1
-    assert lines[-1] == "FAILED: 1 fault"
+    assert lines[0].startswith("FAILED: 1 of ") and "laws broken" in lines[0]
     (line,) = [line for line in lines if line.startswith("FAULT")]
     assert "tip on the paper while the pen is down: 0.19999 of 0.05 mm" in line
     assert "stroke 0" in line
@@ -312,7 +312,7 @@ def test_text_and_json_say_the_same() -> None:
     assert [one["check"] for one in values["findings"] if not one["passed"]] == [
         "tip on the paper while the pen is down"
     ]
-    assert CheckResult(()).text() == "passed"
+    assert CheckResult(()).text() == "passed: 0 laws"
 
 
 def test_lines_read_well() -> None:

@@ -68,7 +68,7 @@ def _styles_every_class(page: Reader, text: str) -> None:
 def _has_pictures_for_light_and_dark(page: Reader) -> None:
     light = [attributes["src"] for tag, attributes in page.tags if tag == "img"]
     dark = [attributes["srcset"] for tag, attributes in page.tags if tag == "source"]
-    assert len(light) == len(dark) == 6
+    assert len(light) == len(dark) == 7
     for pair in zip(light, dark, strict=True):
         grounds = []
         for address in pair:
