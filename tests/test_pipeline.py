@@ -13,18 +13,19 @@ import pytest
 import shapely
 from hypothesis import HealthCheck, given, settings
 
-from planner import pipeline
+from planner import pen_drawing
 from planner.arms.arm_file import arms_folder
 from planner.arrays import FloatArray
 from planner.checking.check import check_trajectory
 from planner.drawing.metric import Metric
+from planner.drawing.options import ReadingOptions
 from planner.drawing.order import order_strokes, travel
 from planner.drawing.svg import read_drawing
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach, UnknownArm, UsageError
 from planner.head import LeftOut
 from planner.pipeline import Plan, placed_strokes, plan
 from planner.placement import pieces
-from planner.settings import CanvasKind, Method, PlanSettings
+from planner.settings import CanvasKind, Method, PlaceKind, PlanSettings
 from planner.timing.length_bound import require_bounded
 from planner.trajectory import TRAVELLING, Trajectory, write_trajectory
 from planner.travel.travel_time_metric import travel_time_metric
@@ -48,10 +49,13 @@ def unheard(stage: str, done: int, total: int) -> None:
     """Progress that nobody looks at."""
 
 
+ALL_OF_IT = ReadingOptions(crop="none")
+
+
 def planned(folder: Path, shapes: list[Shape], wanted: PlanSettings, attributes: str = 'viewBox="0 0 100 100"') -> Plan:
     file = folder / "drawing.svg"
     file.write_text(svg_of(shapes, attributes), encoding="utf-8")
-    return plan(file, wanted, unheard)
+    return plan(file, replace(wanted, place=PlaceKind.INK, reading=ALL_OF_IT), unheard)
 
 
 @lru_cache
@@ -124,7 +128,9 @@ def assert_keeps_its_promises(trajectory: Trajectory, shapes: list[Shape], arm_n
 
 
 def assert_checked(trajectory: Trajectory, folder: Path, arm_name: str = "drawing_arm") -> None:
-    check_result = check_trajectory(trajectory, load_once(arm_name), read_drawing(folder / "drawing.svg"))
+    check_result = check_trajectory(
+        trajectory, load_once(arm_name), read_drawing(folder / "drawing.svg", options=ALL_OF_IT)
+    )
     assert check_result.passed, check_result.text()
 
 
@@ -151,7 +157,7 @@ def test_drawings_fill_their_canvas(tmp_path: Path, canvas: CanvasKind, rotate_d
     """The documents' canvas and the largest of its kind have far corners where the arm is stretched out: a round
     drawing in the middle stays clear of them."""
     arm = load_once("drawing_arm")
-    wanted = PlanSettings(canvas=canvas, rotate_deg=rotate_deg, margin_mm=8.0)
+    wanted = PlanSettings(canvas=canvas, rotate_deg=rotate_deg, margin_mm=8.0, place=PlaceKind.INK)
     result = planned(tmp_path, [ellipse(30, 30, 20, 20)], wanted)
     where = canvas_of(model_of(arm), canvas, arm.pen.lift_mm)
     ((x, y),) = (line.T for line in placed(result.trajectory, [ellipse(30, 30, 20, 20)]))
@@ -224,7 +230,7 @@ def test_what_is_out_of_reach_is_named_or_left_out(tmp_path: Path) -> None:
     assert caught.value.exit_code == 3 and caught.value.stroke >= 0 and caught.value.joint == "q1"
     result = planned(tmp_path, shapes, replace(wanted, skip_unreachable=True))
     assert any("out of reach" in warning for warning in result.summary.warnings)
-    told, shown = result.trajectory.left_out, read_drawing(tmp_path / "drawing.svg")
+    told, shown = result.trajectory.left_out, result.drawing
     check_result = check_trajectory(result.trajectory, load_once(str(file)), shown)
     assert check_result.passed, check_result.text()
     assert f"nothing missing: left out as asked: {told.length_mm:.0f}"[:-1] in check_result.text()
@@ -337,20 +343,28 @@ def test_sequential_methods_draw_beside_joint_limits_what_method_path_draws(tmp_
 def test_far_too_long_drawings_are_refused_before_all_of_it_is_timed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(pipeline, "_MANY_CHUNKS", 2)
-    monkeypatch.setattr(pipeline, "require_bounded", partial(require_bounded, most_samples=1500))
+    monkeypatch.setattr(pen_drawing, "_MANY_CHUNKS", 2)
+    monkeypatch.setattr(pen_drawing, "require_bounded", partial(require_bounded, most_samples=1500))
     walk = np.cumsum(np.random.default_rng(3).normal(size=(1500, 2)), axis=0)
     drawing = tmp_path / "walk.svg"
     drawing.write_text(svg_of([polyline(*walk.tolist())]))
     told: list[tuple[str, int, int]] = []
     with pytest.raises(UsageError, match="the drawing would take"):
-        plan(drawing, PlanSettings(tolerance_mm=0.01, speed_mm_s=500.0), lambda *progress: told.append(progress))
+        plan(
+            drawing,
+            PlanSettings(tolerance_mm=0.01, speed_mm_s=500.0, place=PlaceKind.INK),
+            lambda *progress: told.append(progress),
+        )
     assert max(done for stage, done, _ in told if stage == "drawing motions") == 0
 
 
 def test_strokes_are_ordered_by_the_time_of_the_arms_travel(tmp_path: Path) -> None:
     """Not by how far its joints move: one long move is sooner done than several short ones."""
-    file, settings, model = tmp_path / "drawing.svg", PlanSettings(), model_of(load_once("drawing_arm"))
+    file, settings, model = (
+        tmp_path / "drawing.svg",
+        PlanSettings(place=PlaceKind.INK),
+        model_of(load_once("drawing_arm")),
+    )
     drawn = [polyline(*map(tuple, stroke.tolist())) for stroke in STROKE_SETS["clustered"]]
     file.write_text(svg_of(drawn, 'viewBox="-20 -20 240 180"'), encoding="utf-8")
     strokes, _ = placed_strokes(file, model, settings)

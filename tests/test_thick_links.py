@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from planner import pipeline
+from planner import pen_drawing
 from planner.arms.arm_file import arms_folder, read_arm_file
 from planner.arms.description import arm_description
 from planner.checking.check import check_trajectory
@@ -23,7 +23,7 @@ from planner.execution.workers import ALONE
 from planner.kinematics.link_clearance import Collision
 from planner.motion.timed_stroke import Contact
 from planner.pipeline import plan
-from planner.settings import PlanSettings
+from planner.settings import PlaceKind, PlanSettings
 from planner.trajectory import TRAVELLING, Trajectory, read_trajectory
 from planner.travel.travel_moves import TravelMove, TravelRules
 from tests.arms.chains import load_once, model_of, thick
@@ -35,7 +35,10 @@ LINES = ("M20 5 H200", "M110 20 V50", "M100 89 H120")  # the last one near the b
 def drawing(tmp_path: Path) -> Path:
     file = tmp_path / "lines.svg"
     paths = "".join(f'<path d="{line}"/>' for line in LINES)
-    file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 220 90">{paths}</svg>', encoding="utf-8")
+    file.write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 220 90" fill="none" stroke="black">{paths}</svg>',
+        encoding="utf-8",
+    )
     return file
 
 
@@ -56,17 +59,17 @@ def test_an_arm_that_folds_without_thickness_does_not_with_it(
 ) -> None:
     arm = str(arm_file(tmp_path, q1=30.0, q2=30.0, q3=30.0, q4=30.0, q5=30.0))
     output = str(tmp_path / "lines.csv")
-    assert main([str(drawing), "-o", output, "--margin", "0", "--quiet"]) == 0
-    assert main(["check", output]) == 0
+    assert main([str(drawing), "-o", output, "--margin", "0", "--place", "ink", "--quiet"]) == 0
+    assert main(["check", output, "--verbose"]) == 0
     assert "links apart" not in capsys.readouterr().out
     assert main(["check", output, "--arm", arm, "--json", str(tmp_path / "result.json")]) == 1
     (fault,) = [
         finding for finding in json.loads((tmp_path / "result.json").read_text())["findings"] if not finding["passed"]
     ]
     assert fault["check"] == "links apart" and fault["worst"] < -5 and fault["place"]["stroke"] == 2
-    assert main([str(drawing), "-o", output, "--arm", arm, "--margin", "0", "--quiet"]) == 0
+    assert main([str(drawing), "-o", output, "--arm", arm, "--margin", "0", "--place", "ink", "--quiet"]) == 0
     capsys.readouterr()
-    assert main(["check", output, "--arm", arm, "--drawing", str(drawing)]) == 0, capsys.readouterr().out
+    assert main(["check", output, "--arm", arm, "--drawing", str(drawing), "--verbose"]) == 0, capsys.readouterr().out
     assert "links apart" in capsys.readouterr().out
 
 
@@ -74,7 +77,20 @@ def test_a_method_that_runs_into_itself_is_refused_or_left_out(
     drawing: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     arm, output = str(arm_file(tmp_path, q2=38.0, q4=38.0)), tmp_path / "lines.csv"
-    arguments = [str(drawing), "-o", str(output), "--arm", arm, "--method", "dls", "--margin", "0", "--quiet"]
+    arguments = [
+        str(drawing),
+        "-o",
+        str(output),
+        "--arm",
+        arm,
+        "--method",
+        "dls",
+        "--margin",
+        "0",
+        "--place",
+        "ink",
+        "--quiet",
+    ]
     assert main(arguments) == 3
     message = capsys.readouterr().err
     assert re.search(r"stroke 2, point \d at .* there would be -\d\.\d\d mm between link q2 and link q4", message)
@@ -114,11 +130,11 @@ def test_strokes_that_no_travel_move_gets_to_are_refused_or_left_out(
     def unheard(stage: str, done: int, total: int) -> None:
         pass
 
-    monkeypatch.setattr(pipeline, "planned_travel_moves", colliding)
+    monkeypatch.setattr(pen_drawing, "planned_travel_moves", colliding)
     with pytest.raises(LinksCollide, match=r"before stroke 2 there would be -1\.50 mm between link q2 and") as told:
-        plan(drawing, PlanSettings(margin_mm=0.0), unheard, ALONE)
+        plan(drawing, PlanSettings(place=PlaceKind.INK, margin_mm=0.0), unheard, ALONE)
     assert (told.value.stroke, told.value.links, told.value.exit_code) == (2, ("link q2", "link q4"), 3)
-    made = plan(drawing, PlanSettings(margin_mm=0.0, skip_unreachable=True), unheard, ALONE)
+    made = plan(drawing, PlanSettings(place=PlaceKind.INK, margin_mm=0.0, skip_unreachable=True), unheard, ALONE)
     assert set(made.trajectory.stroke.tolist()) == {TRAVELLING, 0, 1}
     check_result = check_trajectory(made.trajectory, load_once("drawing_arm"), read_drawing(drawing))
     assert check_result.passed, check_result.text()
