@@ -1,0 +1,1 @@
+"""What a browser paints, as lines: the reference that readings of drawings are held against."""
