@@ -122,6 +122,22 @@ def test_errors_are_one_line(
     assert not Path("a").exists()
 
 
+@pytest.mark.parametrize(
+    ("content", "arguments", "advice"),
+    [
+        ('<path stroke="red" d="M60 60h20"/>', [], "all of it is beyond the page: draw it with --crop none"),
+        ('<text y="20">a</text>', ["--text", "skip"], "draw text with --text single or outline"),
+    ],
+)
+def test_where_nothing_is_left_the_option_is_named(
+    content: str, arguments: list[str], advice: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "empty.svg"
+    file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 50 50">{content}</svg>')
+    assert main(["lines", str(file), "--json", "-", *arguments]) == 2
+    assert advice in capfd.readouterr().err
+
+
 def test_a_plan_is_checked_and_shown_by_what_was_read(drawing: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main([str(drawing), "-o", "traj.csv", "--crop", "none", "--occlude", "--quiet"]) == 0
     assert "# crop: none\n# occlude: yes\n" in Path("traj.csv").read_text(encoding="utf-8")

@@ -18,6 +18,7 @@ from planner.drawing.subpath import Subpath
 REPEAT_LIMIT = 10
 """How often the same line is drawn over itself: a few times make it darker, more wear the paper through, and are a
 slip of the program that wrote the file."""
+BEYOND_THE_PAGE = "ink beyond the page"
 _REPEATS = f"repeats of a line that is there {REPEAT_LIMIT} times"
 _HIDING = 1e-6
 """What the edges of covers may miss their curves by, against the extent of the page."""
@@ -35,7 +36,7 @@ def outlines(scene: Scene, options: ReadingOptions) -> tuple[tuple[Outline, ...]
         lines, n_beyond = cut_to_the_page(lines, scene)
     drawn, n_repeats = _without_repeats(shapes, lines)
     # A Counter keeps no zeros that are added to it.
-    return drawn, +Counter({"background": n_behind, "ink beyond the page": n_beyond, _REPEATS: n_repeats})
+    return drawn, +Counter({"background": n_behind, BEYOND_THE_PAGE: n_beyond, _REPEATS: n_repeats})
 
 
 def _with_area(shapes: Sequence[Shape]) -> list[list[Subpath]]:

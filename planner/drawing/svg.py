@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.options import AS_A_BROWSER, ReadingOptions
-from planner.drawing.outlines import outlines
+from planner.drawing.outlines import BEYOND_THE_PAGE, outlines
 from planner.drawing.scene.scene import read_scene
 from planner.drawing.shapes import SHAPES
 from planner.drawing.source import DrawingSource, read_source
@@ -16,7 +16,7 @@ from planner.errors import DrawingError
 
 _STEPS = 4
 _ADVICE = {
-    "text": "convert text to paths (in Inkscape: Path, Object to Path)",
+    "text": "draw text with --text single or outline",
     "foreignObject": "convert embedded pages to paths, or export the drawing as plain SVG",
     "image": "trace pictures to paths (in Inkscape: Path, Trace Bitmap)",
     "path with unusable numbers": "bring the numbers of its paths and transforms below 1e9",
@@ -57,6 +57,8 @@ def _nothing_drawable(document: Document, skipped: Mapping[str, int]) -> str:
     shapes = counted(n_shapes, "shape") if n_shapes else "no shapes"
     seen = shapes if n_shapes == 0 else f"{shapes}, none of them visible and of any size"
     advice = [what for kind, what in _ADVICE.items() if kind in skipped]
+    if BEYOND_THE_PAGE in skipped:
+        advice.append("all of it is beyond the page: draw it with --crop none, or give the page another viewBox")
     if not advice:
         advice = ["draw lines or shapes" if n_shapes == 0 else "give its shapes a size, and a fill or a stroke"]
     left_out = "; skipped: " + ", ".join(f"{n} {kind}" for kind, n in skipped.items()) if skipped else ""

@@ -267,6 +267,10 @@ def _making(planned: Planned) -> list[Markup]:
         ("margin", f"{settings.margin_mm:g} mm"),
         ("turned by", f"{settings.rotate_deg:g}°"),
         ("out of reach left out", _yes(settings.skip_unreachable)),
+        ("text", settings.reading.text + (f", of {settings.reading.font}" if settings.reading.font else "")),
+        ("ink beyond the page cut off", _yes(settings.reading.crop == "page")),
+        ("lines under fills left out", _yes(settings.reading.occlude)),
+        ("pixels to the inch", f"{settings.reading.dpi:g}"),
         ("svg_to_arm_mm", " ".join(f"{value:.6g}" for value in planned.trajectory.svg_to_arm_mm)),
     ]
     made_with = [("Python", platform.python_version()), *((name, version(name)) for name in _MADE_WITH)]

@@ -17,7 +17,7 @@ from tests.report.test_markup import Reader
 NAME = "a<b>&'c\".svg"
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20">
 <g fill="none" stroke="black"><path d="M5 5 L20 6 L12 15"/><path d="M30 8 a4 4 0 1 1 1 0"/>
-<path d="M25 15 h0" stroke-linecap="round"/></g><image width="3" height="3" href="x.png"/></svg>"""
+<path d="M25 15 h0" stroke-linecap="round"/></g><image width="9" height="9" href="data:image/png;base64,AAAA"/></svg>"""
 
 
 def test_a_page_in_the_place_of_another(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from planner.arrays import FloatArray, IntArray
 from planner.drawing.cubics import velocity
+from planner.drawing.cut.cubic_roots import sign_changes
 
 _ROUNDS, _STEPS = 24, 12
 _PRECISION = 1e-9
@@ -30,13 +31,12 @@ class ArcLength:
 
     @classmethod
     def of(cls, control: FloatArray) -> ArcLength:
-        """Stretches are halved until halves and whole agree twice in a row, as once may be by chance: near a cusp that
-        takes many."""
-        curve = np.arange(len(control))
-        start, end = np.zeros(len(control)), np.ones(len(control))
+        """Stretches begin where a curve is slowest, as it is at a cusp, and are halved until halves and whole agree
+        twice in a row: once may be by chance."""
+        curve, start, end = _between_slowest(control)
         bound = _PRECISION * np.hypot(*np.moveaxis(np.diff(control, axis=1), 2, 0)).sum(axis=1)
         done: list[tuple[IntArray, FloatArray, FloatArray]] = []
-        whole, agreed = _length(control, start, end), np.zeros(len(control), dtype=np.bool_)
+        whole, agreed = _length(control[curve], start, end), np.zeros(len(curve), dtype=np.bool_)
         for round_ in range(_ROUNDS):
             middle = 0.5 * (start + end)
             left, right = _length(control[curve], start, middle), _length(control[curve], middle, end)
@@ -78,6 +78,23 @@ class ArcLength:
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 t = np.clip(t - np.nan_to_num(excess / speed, posinf=0.0, neginf=0.0), start, end)
         return curve, t
+
+
+def _between_slowest(control: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Curves cut where their speed is least or greatest: of each stretch the curve, its start and its end. There the
+    velocity is square to the acceleration, and their product is a cubic polynomial."""
+    d0, d1, d2 = np.moveaxis(np.diff(control, axis=1), 1, 0)
+    a, b, c = d0, 2.0 * (d1 - d0), d0 - 2.0 * d1 + d2  # velocity / 3 = a + b t + c t^2
+    power = np.stack([np.sum(terms, axis=1) for terms in (a * b, b * b + 2.0 * a * c, 3.0 * b * c, 2.0 * c * c)])
+    # Rounding must not make the speed of a straight line come and go.
+    power[np.abs(power) < 1e-12 * np.sum(np.square(np.diff(control, axis=1)), axis=(1, 2))] = 0.0
+    slowest, t = sign_changes(power, np.zeros(len(control)), np.ones(len(control)))
+    curve = np.concatenate((np.arange(len(control)), slowest))
+    start = np.concatenate((np.zeros(len(control)), t))
+    order = np.lexsort((start, curve))
+    curve, start = curve[order], start[order]
+    is_last = np.append(np.diff(curve) != 0, True)
+    return curve, start, np.where(is_last, 1.0, np.append(start[1:], 1.0))
 
 
 def _length(control: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
