@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from planner.api.judging import check, compare
     from planner.api.planning import load_arm, plan
     from planner.api.result import Plan
+    from planner.drawing.options import ReadingOptions
     from planner.errors import (
         ArmFileError,
         CalibrationError,
@@ -52,6 +53,7 @@ __all__ = [
     "PlanError",
     "PlanSettings",
     "PlannerError",
+    "ReadingOptions",
     "TargetBeyondReach",
     "TargetOutOfReach",
     "Trajectory",
@@ -68,6 +70,7 @@ __all__ = [
 
 _HOMES = {
     "Plan": "planner.api.result",
+    "ReadingOptions": "planner.drawing.options",
     "Trajectory": "planner.trajectory",
     "check": "planner.api.judging",
     "compare": "planner.api.judging",

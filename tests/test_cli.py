@@ -238,7 +238,6 @@ def test_the_defaults_are_those_of_the_settings() -> None:
         (["--crop", "paper"], "invalid choice: 'paper' (choose from"),
         (["--dpi", "0"], "'0' has to be positive"),
         (["--dpi", "5"], "'5' is less than 10"),
-        (["--font", "a.ttf"], 'a font file goes with text "outline" (--text outline), not "single"'),
         (["--no-such-option"], "unrecognized arguments: --no-such-option"),
         (["--skip"], "unrecognized arguments: --skip"),
     ],

@@ -18,32 +18,173 @@ from planner.drawing.style.properties import ALIASES, PROPERTIES
 from planner.drawing.svg import read_drawing
 from planner.errors import DrawingError
 
-INDEX = """
-alignment-baseline baseline-shift clip clip-path clip-rule color color-interpolation color-interpolation-filters
-color-rendering cursor cx cy d direction display dominant-baseline fill fill-opacity fill-rule filter flood-color
-flood-opacity font font-family font-feature-settings font-kerning font-size font-size-adjust font-stretch font-style
-font-variant font-variant-alternates font-variant-caps font-variant-east-asian font-variant-ligatures
-font-variant-numeric font-variant-position font-weight glyph-orientation-horizontal glyph-orientation-vertical height
-image-rendering inline-size isolation letter-spacing lighting-color line-height marker marker-end marker-mid
-marker-start mask mask-border mask-clip mask-composite mask-image mask-mode mask-origin mask-position mask-repeat
-mask-size mask-type mix-blend-mode object-fit object-position opacity overflow paint-order pointer-events r rx ry
-shape-image-threshold shape-inside shape-margin shape-padding shape-rendering shape-subtract stop-color stop-opacity
-stroke stroke-dasharray stroke-dashoffset stroke-linecap stroke-linejoin stroke-miterlimit stroke-opacity stroke-width
-text-align text-align-all text-align-last text-anchor text-decoration text-decoration-color text-decoration-fill
-text-decoration-line text-decoration-stroke text-decoration-style text-indent text-orientation text-overflow
-text-rendering transform transform-box transform-origin unicode-bidi vector-effect vertical-align visibility
-white-space width will-change word-spacing writing-mode x y
-""".split()
+INDEX = [
+    "alignment-baseline",
+    "baseline-shift",
+    "clip",
+    "clip-path",
+    "clip-rule",
+    "color",
+    "color-interpolation",
+    "color-interpolation-filters",
+    "color-rendering",
+    "cursor",
+    "cx",
+    "cy",
+    "d",
+    "direction",
+    "display",
+    "dominant-baseline",
+    "fill",
+    "fill-opacity",
+    "fill-rule",
+    "filter",
+    "flood-color",
+    "flood-opacity",
+    "font",
+    "font-family",
+    "font-feature-settings",
+    "font-kerning",
+    "font-size",
+    "font-size-adjust",
+    "font-stretch",
+    "font-style",
+    "font-variant",
+    "font-variant-alternates",
+    "font-variant-caps",
+    "font-variant-east-asian",
+    "font-variant-ligatures",
+    "font-variant-numeric",
+    "font-variant-position",
+    "font-weight",
+    "glyph-orientation-horizontal",
+    "glyph-orientation-vertical",
+    "height",
+    "image-rendering",
+    "inline-size",
+    "isolation",
+    "letter-spacing",
+    "lighting-color",
+    "line-height",
+    "marker",
+    "marker-end",
+    "marker-mid",
+    "marker-start",
+    "mask",
+    "mask-border",
+    "mask-clip",
+    "mask-composite",
+    "mask-image",
+    "mask-mode",
+    "mask-origin",
+    "mask-position",
+    "mask-repeat",
+    "mask-size",
+    "mask-type",
+    "mix-blend-mode",
+    "object-fit",
+    "object-position",
+    "opacity",
+    "overflow",
+    "paint-order",
+    "pointer-events",
+    "r",
+    "rx",
+    "ry",
+    "shape-image-threshold",
+    "shape-inside",
+    "shape-margin",
+    "shape-padding",
+    "shape-rendering",
+    "shape-subtract",
+    "stop-color",
+    "stop-opacity",
+    "stroke",
+    "stroke-dasharray",
+    "stroke-dashoffset",
+    "stroke-linecap",
+    "stroke-linejoin",
+    "stroke-miterlimit",
+    "stroke-opacity",
+    "stroke-width",
+    "text-align",
+    "text-align-all",
+    "text-align-last",
+    "text-anchor",
+    "text-decoration",
+    "text-decoration-color",
+    "text-decoration-fill",
+    "text-decoration-line",
+    "text-decoration-stroke",
+    "text-decoration-style",
+    "text-indent",
+    "text-orientation",
+    "text-overflow",
+    "text-rendering",
+    "transform",
+    "transform-box",
+    "transform-origin",
+    "unicode-bidi",
+    "vector-effect",
+    "vertical-align",
+    "visibility",
+    "white-space",
+    "width",
+    "will-change",
+    "word-spacing",
+    "writing-mode",
+    "x",
+    "y",
+]
 """Appendix L of SVG 2, with the properties that its chapters take from CSS Masking, Fonts and Text."""
-OLDER = "clip-path color-profile enable-background glyph-orientation-vertical kerning font-stretch".split()
+OLDER = ["clip-path", "color-profile", "enable-background", "glyph-orientation-vertical", "kerning", "font-stretch"]
 """SVG 1.1."""
-CSS = """
-rotate scale translate offset-path offset-rotate offset-distance perspective perspective-origin transform-style
-backface-visibility content-visibility zoom z-index position text-transform text-shadow text-emphasis tab-size
-word-break overflow-wrap hyphens line-break white-space-collapse text-wrap font-optical-sizing font-variation-settings
-font-synthesis font-palette font-language-override object-fit animation animation-name transition all border padding
-margin outline background background-color background-image color-scheme overflow-x overflow-y
-""".split()
+CSS = [
+    "rotate",
+    "scale",
+    "translate",
+    "offset-path",
+    "offset-rotate",
+    "offset-distance",
+    "perspective",
+    "perspective-origin",
+    "transform-style",
+    "backface-visibility",
+    "content-visibility",
+    "zoom",
+    "z-index",
+    "position",
+    "text-transform",
+    "text-shadow",
+    "text-emphasis",
+    "tab-size",
+    "word-break",
+    "overflow-wrap",
+    "hyphens",
+    "line-break",
+    "white-space-collapse",
+    "text-wrap",
+    "font-optical-sizing",
+    "font-variation-settings",
+    "font-synthesis",
+    "font-palette",
+    "font-language-override",
+    "object-fit",
+    "animation",
+    "animation-name",
+    "transition",
+    "all",
+    "border",
+    "padding",
+    "margin",
+    "outline",
+    "background",
+    "background-color",
+    "background-image",
+    "color-scheme",
+    "overflow-x",
+    "overflow-y",
+]
 """What browsers honour in SVG, or might."""
 SHORTHANDS = {"font", "marker", "all"}
 
@@ -232,21 +373,111 @@ def test_properties_without_bearing_change_and_count_nothing() -> None:
     assert read(rule).skipped == read().skipped
 
 
-ELEMENTS = """
-a animate animateMotion animateTransform audio canvas circle clipPath defs desc discard ellipse feBlend feColorMatrix
-feComponentTransfer feComposite feConvolveMatrix feDiffuseLighting feDisplacementMap feDistantLight feDropShadow
-feFlood feFuncA feFuncB feFuncG feFuncR feGaussianBlur feImage feMerge feMergeNode feMorphology feOffset fePointLight
-feSpecularLighting feSpotLight feTile feTurbulence filter foreignObject g iframe image line linearGradient marker mask
-metadata mpath path pattern polygon polyline radialGradient rect script set stop style svg switch symbol text textPath
-title tspan unknown use video view
-""".split()
+ELEMENTS = [
+    "a",
+    "animate",
+    "animateMotion",
+    "animateTransform",
+    "audio",
+    "canvas",
+    "circle",
+    "clipPath",
+    "defs",
+    "desc",
+    "discard",
+    "ellipse",
+    "feBlend",
+    "feColorMatrix",
+    "feComponentTransfer",
+    "feComposite",
+    "feConvolveMatrix",
+    "feDiffuseLighting",
+    "feDisplacementMap",
+    "feDistantLight",
+    "feDropShadow",
+    "feFlood",
+    "feFuncA",
+    "feFuncB",
+    "feFuncG",
+    "feFuncR",
+    "feGaussianBlur",
+    "feImage",
+    "feMerge",
+    "feMergeNode",
+    "feMorphology",
+    "feOffset",
+    "fePointLight",
+    "feSpecularLighting",
+    "feSpotLight",
+    "feTile",
+    "feTurbulence",
+    "filter",
+    "foreignObject",
+    "g",
+    "iframe",
+    "image",
+    "line",
+    "linearGradient",
+    "marker",
+    "mask",
+    "metadata",
+    "mpath",
+    "path",
+    "pattern",
+    "polygon",
+    "polyline",
+    "radialGradient",
+    "rect",
+    "script",
+    "set",
+    "stop",
+    "style",
+    "svg",
+    "switch",
+    "symbol",
+    "text",
+    "textPath",
+    "title",
+    "tspan",
+    "unknown",
+    "use",
+    "video",
+    "view",
+]
 """Appendix K of SVG 2."""
-OLDER_ELEMENTS = """
-altGlyph altGlyphDef altGlyphItem animateColor color-profile cursor font font-face font-face-format font-face-name
-font-face-src font-face-uri glyph glyphRef hkern missing-glyph tref vkern
-""".split()
+OLDER_ELEMENTS = [
+    "altGlyph",
+    "altGlyphDef",
+    "altGlyphItem",
+    "animateColor",
+    "color-profile",
+    "cursor",
+    "font",
+    "font-face",
+    "font-face-format",
+    "font-face-name",
+    "font-face-src",
+    "font-face-uri",
+    "glyph",
+    "glyphRef",
+    "hkern",
+    "missing-glyph",
+    "tref",
+    "vkern",
+]
 """SVG 1.1."""
-DRAFTS = "flowRoot flowRegion flowPara hatch hatchpath mesh meshgradient meshpatch meshrow solidcolor".split()
+DRAFTS = [
+    "flowRoot",
+    "flowRegion",
+    "flowPara",
+    "hatch",
+    "hatchpath",
+    "mesh",
+    "meshgradient",
+    "meshpatch",
+    "meshrow",
+    "solidcolor",
+]
 """Drafts of SVG 1.2 and 2, that Inkscape wrote."""
 SHOWN = {
     "a": "<a>{}</a>",
