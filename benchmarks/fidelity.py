@@ -15,6 +15,7 @@ import gzip
 import io
 import json
 import sys
+import tempfile
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
@@ -71,14 +72,16 @@ def drawn(file: Path, text: str) -> Drawn:
     """The product's lines in mm on the page."""
     from planner.cli import main
 
-    out, said = io.StringIO(), io.StringIO()
-    with redirect_stdout(out), redirect_stderr(said):
-        code = main(["lines", str(file), "--json", "-", "--text", text])
+    said = io.StringIO()
+    with tempfile.TemporaryDirectory() as folder, redirect_stdout(io.StringIO()), redirect_stderr(said):
+        target = Path(folder) / "lines.json"
+        code = main(["lines", str(file), "--json", str(target), "--text", text])
+        found = json.loads(target.read_text()) if code == 0 else {}
     if code:
         return Drawn((0.0, 0.0), [], {}, said.getvalue().strip() or f"exit {code}")
-    found = json.loads(out.getvalue())
     lines = [np.array(line["points"], float).reshape(-1, 2) for line in found["lines"]]
-    return Drawn(tuple(found["page_mm"]), lines, found["skipped"])
+    width, height = found["page_mm"]
+    return Drawn((width, height), lines, found["skipped"])
 
 
 def judge(browser: Chromium, file: Path, pictures: Path | None) -> Judgement:

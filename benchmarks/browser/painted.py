@@ -11,6 +11,7 @@ import pypdfium2
 import pypdfium2.raw as pdfium
 import shapely
 from shapely.geometry.base import BaseGeometry
+from shapely.ops import substring
 
 from planner.arrays import FloatArray
 
@@ -25,12 +26,13 @@ _CHORD = 1e-4
 class Painted:
     """One painted object. kind: "fill", "stroke", "text" or "image". lines: polylines (n, 2) in pixels of CSS from
     the top left corner of the page, closed where it is a fill; of a text or image its box. clip: what cuts it, or
-    None."""
+    None. width: of a stroke."""
 
     kind: str
     lines: list[FloatArray]
     clip: BaseGeometry | None
     alpha: int
+    width: float = 0.0
     area: BaseGeometry | None = field(default=None)
 
     def visible(self) -> list[FloatArray]:
@@ -56,6 +58,14 @@ def parts_of(line: FloatArray, region: BaseGeometry) -> list[FloatArray]:
         return [line] if region.intersects(shapely.Point(line[0])) else []
     parts = shapely.get_parts(shapely.line_merge(shapely.LineString(line).intersection(region)))
     return [shapely.get_coordinates(part) for part in parts if part.length > 0.0]
+
+
+def trimmed(line: FloatArray, length: float) -> list[FloatArray]:
+    """A line without so much of both of its ends, if anything is left."""
+    whole = shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0])
+    if whole.length <= 2.0 * length:
+        return []
+    return [shapely.get_coordinates(substring(whole, length, whole.length - length))]
 
 
 def painted(pdf: bytes, stretch: tuple[float, float] = (1.0, 1.0)) -> list[Painted]:
@@ -119,7 +129,10 @@ class _Reader:
             closed = [line if len(line) < 2 else np.concatenate((line, line[:1])) for line in lines]
             yield Painted("fill", closed, clip, _alpha(pdfium.FPDFPageObj_GetFillColor, thing))
         if is_stroked.value:
-            yield Painted("stroke", lines, clip, _alpha(pdfium.FPDFPageObj_GetStrokeColor, thing))
+            width = ctypes.c_float()
+            pdfium.FPDFPageObj_GetStrokeWidth(thing, width)
+            across = width.value * float(np.sqrt(abs(np.linalg.det(affine[:2, :2]))))
+            yield Painted("stroke", lines, clip, _alpha(pdfium.FPDFPageObj_GetStrokeColor, thing), across)
 
     def _clip(self, thing: object, affine: FloatArray, outer: BaseGeometry | None) -> BaseGeometry | None:
         path = pdfium.FPDFPageObj_GetClipPath(thing)
@@ -133,7 +146,7 @@ class _Reader:
             key = b"".join(line.tobytes() for line in lines)
             if key not in self._clips:
                 self._clips[key] = _union(lines)
-                if len(lines) == 1 and len(lines[0]) <= 5:  # a page, a viewport, a marker or a tile
+                if len(shapely.get_coordinates(self._clips[key])) <= 5:  # a page, a viewport, a marker or a tile
                     self._clips[key] = self._clips[key].buffer(_ON_THE_EDGE_PX, join_style="mitre")
             clip = self._clips[key] if clip is None else clip.intersection(self._clips[key])
         return clip

@@ -22,7 +22,7 @@ from scipy.ndimage import maximum_filter
 from planner.arrays import FloatArray
 
 from .chromium import Chromium
-from .painted import Painted, is_dot, painted, parts_of
+from .painted import Painted, is_dot, painted, parts_of, trimmed
 
 _SCRIPT = Path(__file__).with_name("page.js").read_text()
 _ABOVE_ALL = ":not(#a#b#c#d)"
@@ -41,6 +41,7 @@ _SOLID = f"*{_ABOVE_ALL} {{ stroke-dasharray: none !important; }}"
 _BUTT = f"*{_ABOVE_ALL} {{ stroke-linecap: butt !important; }}"
 _LONGEST_SIDE_PIXELS = 1000.0
 _SEEN_WITHIN_PIXELS = 2
+_BLURRED_PIXELS = 6
 _TOUCH = 0.08
 """Of the longer side of the page."""
 _DRAWN = ("fill", "stroke")
@@ -94,14 +95,16 @@ def reference(browser: Chromium, drawing: bytes, size_px: tuple[float, float] = 
     solid = _print(browser, _WITHOUT_TEXT + _SOLID, found.size_px)
     if any(thing.kind == "image" for thing in solid):
         found.has_to_be_said.append("image")
-    lines = _lines(browser, [thing for thing in solid if thing.kind in _DRAWN], facts["dashed"], found.size_px)
+    solid = [thing for thing in solid if thing.kind in _DRAWN]
+    lines, doubtful = _dashed(browser, solid, found) if facts["dashed"] else (_all(solid), [])
     if facts["text"]:
         texts = [_boxed(thing) for thing in _print(browser, _WITHOUT_SHAPES, found.size_px) if thing.kind != "image"]
         found.text_boxes = [part for thing in texts for part in thing.visible() if len(part) > 1]
+    found.lines += doubtful
     uncut = _cut(browser, lines, found, scale) if facts["cut"] else lines
     for line in uncut:
         parts = _seen(line, seen, scale)
-        found.sure += parts
+        found.sure += parts if _is_whole(parts, line) else _certain(parts, scale)
         found.lines += [line] if parts else []
     return found
 
@@ -117,23 +120,32 @@ def _print(browser: Chromium, rules: str, size_px: tuple[float, float]) -> list[
     return [thing for thing in painted(browser.pdf(), (stretch[0], stretch[1])) if thing.alpha]
 
 
-def _lines(browser: Chromium, solid: list[Painted], is_dashed: bool, size_px: tuple[float, float]) -> list[FloatArray]:
-    """The lines of a print, with the gaps of dashes: where they are, a stroke is printed as a fill."""
-    if not is_dashed:
-        return [line for thing in solid for line in thing.visible()]
-    gapped = [thing for thing in _print(browser, _WITHOUT_TEXT + _BUTT, size_px) if thing.kind in _DRAWN]
+def _all(things: list[Painted]) -> list[FloatArray]:
+    return [line for thing in things for line in thing.visible()]
+
+
+def _dashed(browser: Chromium, solid: list[Painted], found: Reference) -> tuple[list[FloatArray], list[FloatArray]]:
+    """The lines of a print with the gaps of dashes, and those that may be there too, under caps and around corners:
+    where there are gaps, a stroke is printed as a fill."""
     lines: list[FloatArray] = []
-    fills = [thing for thing in gapped if thing.kind == "fill"]
+    doubtful: list[FloatArray] = []
     known = {_key(thing) for thing in solid if thing.kind == "fill"}
-    dashes = [thing for thing in fills if _key(thing) not in known]
-    stroked = {_key(thing) for thing in gapped if thing.kind == "stroke"}
-    ink = shapely.unary_union([thing.region() for thing in dashes]).buffer(0.02)
+    inks = []
+    for rules in (_BUTT, ""):
+        gapped = [thing for thing in _print(browser, _WITHOUT_TEXT + rules, found.size_px) if thing.kind in _DRAWN]
+        fills = [thing for thing in gapped if thing.kind == "fill" and _key(thing) not in known]
+        stroked = {_key(thing) for thing in gapped if thing.kind == "stroke"}
+        inks.append((stroked, shapely.unary_union([thing.region() for thing in fills]).buffer(0.02)))
+    (stroked, ink), (_, capped) = inks
     for thing in solid:
         parts = thing.visible()
-        if thing.kind == "stroke" and _key(thing) not in stroked:
-            parts = [part for line in parts for part in parts_of(line, ink)]
-        lines += parts
-    return lines
+        if thing.kind != "stroke" or _key(thing) in stroked:
+            lines += parts
+            continue
+        dashes = [part for line in parts for part in parts_of(line, ink)]
+        lines += [part for dash in dashes for part in trimmed(dash, thing.width / 2.0)]
+        doubtful += dashes + [part for line in parts for part in parts_of(line, capped)]
+    return lines, doubtful
 
 
 def _key(thing: Painted) -> tuple[Any, ...]:
@@ -163,11 +175,19 @@ def _cut(browser: Chromium, lines: list[FloatArray], found: Reference, scale: fl
     }
     for line in lines:
         parts = _seen(line, seen, scale) if _line_key(line) in cut else []
-        for part in parts:
-            found.lines.append(part)
-            if part is line or np.ptp(part, axis=0).max() >= _TOUCH * max(found.size_px):
-                found.sure.append(part)
+        found.lines += parts
+        long = [part for part in parts if np.ptp(part, axis=0).max() >= _TOUCH * max(found.size_px)]
+        found.sure += parts if _is_whole(parts, line) else _certain(long, scale)
     return [line for line in lines if _line_key(line) not in cut]
+
+
+def _is_whole(parts: list[FloatArray], line: FloatArray) -> bool:
+    return len(parts) == 1 and parts[0] is line
+
+
+def _certain(parts: list[FloatArray], scale: float) -> list[FloatArray]:
+    """Parts without their ends, which a screenshot shows no better than by a few pixels."""
+    return [part for line in parts for part in trimmed(line, _BLURRED_PIXELS / scale)]
 
 
 def _line_key(line: FloatArray) -> bytes:

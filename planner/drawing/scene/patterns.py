@@ -25,6 +25,8 @@ from planner.drawing.xml_tree import Element
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
+_FARTHEST_TILE = 2.0**53
+"""From here on there are no whole numbers between which a tile could lie."""
 TILE_LIMIT = 10_000
 """Tiles of one pattern on one shape: more of them are a grey to the eye."""
 
@@ -46,8 +48,10 @@ class Tiles:
         are too many."""
         x, y, width, height = moved_box(box, inverse(self.to_user))
         left, top, step_x, step_y = self.tile
-        columns = range(math.floor((x - left) / step_x), math.ceil((x + width - left) / step_x))
-        rows = range(math.floor((y - top) / step_y), math.ceil((y + height - top) / step_y))
+        ends = ((x - left) / step_x, (x + width - left) / step_x, (y - top) / step_y, (y + height - top) / step_y)
+        if not max(map(abs, ends)) < _FARTHEST_TILE:
+            return None
+        columns, rows = (range(math.floor(begin), math.ceil(end)) for begin, end in (ends[:2], ends[2:]))
         if len(columns) * len(rows) > TILE_LIMIT:
             return None
         linear = self.to_user[:, :2]

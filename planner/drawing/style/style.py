@@ -52,7 +52,7 @@ _OLD_WRITING_MODES = {
 class Style:
     """The computed style of one element in one place of the rendering tree (`use` shows an element in several)."""
 
-    __slots__ = ("_inherited", "_line_height", "_own", "_page", "_units", "_variables", "element", "parent")
+    __slots__ = ("_inherited", "_own", "_page", "_units", "_variables", "element", "parent")
 
     def __init__(
         self,
@@ -73,23 +73,11 @@ class Style:
         self._inherited = inherited
         self._variables = variables
         self._units = units
-        self._line_height: float | None = None
 
     @property
     def font_size(self) -> float:
         """In user units."""
         return self._units.font_size
-
-    @property
-    def line_height(self) -> float:
-        """In user units."""
-        if self._line_height is None:
-            quantity = self._units.quantity(self["line-height"], "y")
-            if quantity is None:  # `normal`
-                self._line_height = normal_line_height(self.font_size)
-            else:
-                self._line_height = quantity.value * (self.font_size if quantity.kind == "number" else 1.0)
-        return self._line_height
 
     def __getitem__(self, name: str) -> str:
         """The computed value of a property as text: cascade by origin, importance, specificity and order, `var()`,
@@ -195,7 +183,7 @@ def _computed(element: Element, parent: Style, viewport: tuple[float, float]) ->
     if "font-size" in values:
         font_size = _font_size(values["font-size"], parent._units)
         values["font-size"] = f"{font_size:.10g}px"
-    units = _units(element, parent, viewport, font_size)
+    units = _units(element, parent, viewport, font_size, values)
     for name, value in values.items():
         if name in _RECKONED:
             values[name] = value = _reckoned(name, value, parent, units)
@@ -217,14 +205,27 @@ def _custom_properties(said: Mapping[str, Declared], parent: Style) -> Mapping[s
 _RECKONED = _HANDED_DOWN | _OF_FONT | {"font-weight", "writing-mode", "color"}
 
 
-def _units(element: Element, parent: Style, viewport: tuple[float, float], font_size: float) -> Units:
+def _units(
+    element: Element, parent: Style, viewport: tuple[float, float], font_size: float, values: dict[str, str]
+) -> Units:
+    """Those of an element. `lh` is its own line height, but in `line-height`, which is reckoned here, that above."""
     above = parent._units
-    if element.parent is None:  # `rem` and `rlh` are those of the outermost element
-        return Units(font_size, font_size, above.line_height, normal_line_height(font_size), viewport, above.page)
-    line_height = parent.line_height
-    if (font_size, viewport, line_height) == (above.font_size, above.viewport, above.line_height):
-        return above
-    return Units(font_size, above.root_font_size, line_height, above.root_line_height, viewport, above.page)
+    is_outermost = element.parent is None  # `rem` and `rlh` are those of it
+    if not is_outermost and "line-height" not in values and font_size == above.font_size:
+        return above if viewport == above.viewport else replace(above, viewport=viewport)
+    units = replace(above, font_size=font_size, viewport=viewport)
+    if is_outermost:
+        units = replace(units, root_font_size=font_size)
+    if "line-height" in values:
+        values["line-height"] = units.without_font(values["line-height"], is_percentage_of_font=True)
+    quantity = units.quantity(values.get("line-height", parent["line-height"]), "y")
+    if quantity is None:  # `normal`
+        line_height = normal_line_height(font_size)
+    else:
+        line_height = quantity.value * (font_size if quantity.kind == "number" else 1.0)
+    return replace(
+        units, line_height=line_height, root_line_height=line_height if is_outermost else above.root_line_height
+    )
 
 
 def _winner(name: str, entry: Declared | None, parent: Style) -> str | None:

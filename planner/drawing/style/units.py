@@ -37,8 +37,8 @@ _FONT_RELATIVE = re.compile(rf"(?<![\w.#-])({_NUMBER})(r?(?:em|ex|ch|ic|cap|lh))
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """All sizes in user units. viewport: what percentages are of; page: what `vw` and `vh` are of; line_height: of
-    the parent, which `lh` is."""
+    """All sizes in user units. viewport: what percentages are of; page: what `vw` and `vh` are of; line_height: what
+    `lh` is, that of the element."""
 
     font_size: float
     root_font_size: float

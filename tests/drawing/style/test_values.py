@@ -84,13 +84,13 @@ def test_percentages_are_of_the_viewport_along_their_axis() -> None:
     assert style.length("stroke-width", "diagonal") == pytest.approx(0.1 * math.sqrt((200**2 + 100**2) / 2))
 
 
-def test_lines_and_letters_are_those_of_the_font_around() -> None:
+def test_lines_and_letters_are_those_of_the_own_font() -> None:
     found = styles_of(
         '<g font-size="20"><rect id="a" font-size="50" width="1lh" height="1em"/>'
         '<g style="line-height:2"><rect id="b" width="1lh" height="1rem"/></g></g>',
         'font-size="10"',
     )
-    assert [found["a"].length(name, "x") for name in ("width", "height")] == [24.0, 50.0]
+    assert [found["a"].length(name, "x") for name in ("width", "height")] == [58.0, 50.0]
     assert [found["b"].length(name, "x") for name in ("width", "height")] == [40.0, 10.0]
 
 
