@@ -22,7 +22,14 @@ from planner.cli.terminal import print_summary, print_warnings, progress
 from planner.cli.workers import add_workers_option
 from planner.files import STANDARD
 from planner.progress import of_all_stages
-from planner.settings import MAX_RATE_HZ, MIN_RATE_HZ, MIN_TOLERANCE_MM, CanvasKind, Method, PlanSettings
+from planner.settings import (
+    MAX_RATE_HZ,
+    MIN_RATE_HZ,
+    MIN_TOLERANCE_MM,
+    CanvasKind,
+    Method,
+    PlanSettings,
+)
 
 _DESCRIPTION = """\
 Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a trajectory of joint positions.
@@ -49,7 +56,7 @@ examples:
   plan flower.svg -o traj.csv --report flower      and a page about it, flower/index.html
   draw | plan - > traj.csv                         from a program that writes an SVG, as part of a pipe
   plan city.svg --workers 4                        with four processes; the result does not depend on them
-  plan flower.svg --weights time=3,reversals=0     configurations for speed rather than for servos with backlash
+  plan flower.svg --weights sensitivity=0          configurations for speed rather than for fine lines
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
 
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
@@ -169,8 +176,8 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         type=configuration_weights,
         default=default.weights,
         metavar="NAME=W,...",
-        help="what method path spends spare joints on: time, sensitivity (of the tip to joint errors),"
-        " reversals (of joints), limits (distance from them); those not named weigh 1",
+        help="what method path spends spare joints on: time, sensitivity (of the drawing to joints that run late or"
+        " stand wrong), reversals (of joints), limits (distance from them); those not named weigh 1, reversals 0",
     )
     motion.add_argument(
         "--rate",
