@@ -21,7 +21,7 @@ from tests.judge.verdict import judge, measured
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 20" fill="none" stroke="black">
 <path d="M0 0H60V20H0ZM0 20L20 0L40 20L60 0"/><circle cx="15" cy="10" r="7"/><path d="M45 3v.01"/></svg>"""
 
-US_PER_RAD = 260.0
+US_PER_RAD = 240.0
 
 
 def write_marks(record: Record, marks: Path, target: Path, true: object, seed: int) -> None:
@@ -97,7 +97,7 @@ def test_an_arm_without_redundancy_is_calibrated_too(tmp_path: Path, monkeypatch
     """Six joints point the pen down. The wrist has two ways to do so, between which no leg of a pattern leads."""
     monkeypatch.chdir(tmp_path)
     whole = load_arm("six_joint")
-    line = tuple((at, 1500.0 + US_PER_RAD * at) for at in (-4.0, 4.0))
+    line = tuple((at, 1500.0 + US_PER_RAD * at) for at in (-5.0, 5.0))
     servos = [Servo(channel, line, 1, 0.0, (200.0, 2800.0), 0.5, 3.0, 0.02) for channel in range(whole.n_joints)]
     joints = tuple(replace(joint, servo=servo) for joint, servo in zip(whole.joints, servos, strict=True))
     arm = replace(whole, joints=joints)
