@@ -71,13 +71,14 @@ MOST_PASSES = 20
 class ConfigurationWeights:
     """What method `path` spends the arm's redundancy on; only the ratios of the weights count.
 
-    time: little joint motion for a millimetre of pen; sensitivity: joint errors move the pen little across the
-    paper; reversals: joints that stand still rather than go back and forth (backlash); limits: away from them.
+    time: little joint motion for a millimetre of pen; sensitivity: little drawn error, along the paper and in height,
+    from joints that run late or stand wrong; reversals: joints that stand still rather than go back and forth, for the
+    sake of the gears; limits: away from them.
     """
 
     time: float = 1.0
     sensitivity: float = 1.0
-    reversals: float = 1.0
+    reversals: float = 0.0
     limits: float = 1.0
 
     def __post_init__(self) -> None:
@@ -89,11 +90,7 @@ class ConfigurationWeights:
             raise UsageError("the weights are all zero; at least one has to be positive")
 
 
-EVEN_WEIGHTS = ConfigurationWeights()
-
-WHERE_SLACK_IS_TAKEN_UP = ConfigurationWeights(time=1.0, sensitivity=0.0, reversals=0.0, limits=0.0)
-"""What draws best once a calibration has taken the rest away: little motion of joints for a millimetre of pen. What a
-joint that lags makes of the line goes with its speed, and one at rest floats in what is left of its slack."""
+DEFAULT_WEIGHTS = ConfigurationWeights()
 
 
 @dataclass(frozen=True, slots=True)

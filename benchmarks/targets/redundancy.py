@@ -49,10 +49,10 @@ def against_brute_force(drawing: Path, settings: PlanSettings) -> list[Row]:
     """The map's configuration path against a dense search over all configurations of the ray; and, the price of the
     same configuration at the same place, the map along short strokes against a dense search for each of them."""
     arm = load_arm(settings.arm)
-    model = ArmModel(arm)
-    cost, radii, samples = choice_of_configurations(model.kinematics, settings.weights)
+    model, weights = ArmModel(arm), settings.weights or arm.weights
+    cost, radii, samples = choice_of_configurations(model.kinematics, weights)
     nodes, sharp = sharp_configuration_path(cost, radii, samples)
-    configuration_map = model.configuration_map(settings.weights)
+    configuration_map = model.configuration_map(weights)
     pool = np.concatenate(samples)
     dense = best_of_dense(cost, nodes, on_ray(nodes), pool)
     ours, rounded, brute = (

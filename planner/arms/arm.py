@@ -17,7 +17,7 @@ import numpy as np
 from planner.arms.accuracy import Accuracy
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import FloatArray
-from planner.settings import EVEN_WEIGHTS, ConfigurationWeights
+from planner.settings import DEFAULT_WEIGHTS, ConfigurationWeights
 
 
 class JointKind(StrEnum):
@@ -170,7 +170,7 @@ class Arm:
     park: tuple[float, ...] | None = None
     paper: PaperPose = BASE_PLANE
     accuracy: Accuracy | None = None
-    weights: ConfigurationWeights = EVEN_WEIGHTS
+    weights: ConfigurationWeights = DEFAULT_WEIGHTS
 
     @property
     def n_joints(self) -> int:

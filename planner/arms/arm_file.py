@@ -25,7 +25,7 @@ from planner.arms.servo_section import (
 )
 from planner.arrays import FloatArray
 from planner.errors import ArmFileError, UnknownArm
-from planner.settings import ConfigurationWeights
+from planner.settings import DEFAULT_WEIGHTS, ConfigurationWeights
 
 DEFAULT_ARM = "drawing_arm"
 
@@ -162,10 +162,10 @@ _Weight = Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False)]
 
 
 class _ConfigurationsSection(Section):
-    time: _Weight = 1.0
-    sensitivity: _Weight = 1.0
-    reversals: _Weight = 1.0
-    limits: _Weight = 1.0
+    time: _Weight = DEFAULT_WEIGHTS.time
+    sensitivity: _Weight = DEFAULT_WEIGHTS.sensitivity
+    reversals: _Weight = DEFAULT_WEIGHTS.reversals
+    limits: _Weight = DEFAULT_WEIGHTS.limits
 
     @model_validator(mode="after")
     def _weighs_something(self) -> Self:

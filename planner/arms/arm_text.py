@@ -9,7 +9,7 @@ import numpy as np
 
 from planner.arms.arm import Arm, BusServo, Joint, Servo
 from planner.arms.paper_pose import PaperPose
-from planner.settings import EVEN_WEIGHTS
+from planner.settings import DEFAULT_WEIGHTS
 
 _LIMITS = {"min": "minimum", "max": "maximum"}
 _RATES = {
@@ -58,7 +58,7 @@ def arm_toml(arm: Arm, remarks: Iterable[str] = ()) -> str:
                 }
             )
         )
-    if arm.weights != EVEN_WEIGHTS:
+    if arm.weights != DEFAULT_WEIGHTS:
         blocks.append("[configurations]\n" + _lines(asdict(arm.weights)))
     blocks += [_joint(joint) for joint in arm.joints]
     for coupling in arm.couplings:

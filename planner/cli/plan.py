@@ -90,7 +90,7 @@ examples:
   plan flower.svg -o traj.csv --report flower      and a page about it, flower/index.html
   draw | plan - > traj.csv                         from a program that writes an SVG, as part of a pipe
   plan city.svg --workers 4                        with four processes; the result does not depend on them
-  plan flower.svg --weights time=3,reversals=0     configurations for speed rather than for servos with backlash
+  plan flower.svg --weights sensitivity=0          configurations for speed rather than for fine lines
   plan letter.svg --text outline --font Lora.ttf   letters as the outlines of a font, not as single lines
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
   plan flower.svg --paper a6 --align top-left      at the top left of a sheet
@@ -273,8 +273,8 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         type=configuration_weights,
         default=default.weights,
         metavar="NAME=W,...",
-        help="what method path spends spare joints on: time, sensitivity (of the tip to joint errors),"
-        " reversals (of joints), limits (distance from them); those not named weigh 1",
+        help="what method path spends spare joints on: time, sensitivity (of the drawing to joints that run late or"
+        " stand wrong), reversals (of joints), limits (distance from them); those not named weigh 1, reversals 0",
     )
     motion.add_argument(
         "--rate",

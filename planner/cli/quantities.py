@@ -50,7 +50,7 @@ def number(*, zero: bool = False, minimum: float = 0.0, maximum: float = math.in
 
 
 def configuration_weights(text: str) -> ConfigurationWeights:
-    """Weights such as `time=2,reversals=0.5`; those that are not named stay 1."""
+    """Weights such as `time=2,reversals=0.5`; those that are not named keep their defaults."""
     names = [field.name for field in dataclasses.fields(ConfigurationWeights)]
     weights: dict[str, float] = {}
     for part in text.split(","):

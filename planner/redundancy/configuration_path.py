@@ -44,12 +44,13 @@ def cheapest_configuration_path(
     before = np.empty((0, arm.n_joints))
     for index, configurations in enumerate(samples):
         joints = arm.complete(configurations)
-        own = cost.configurations(configurations) * shares[index] - reward[index]
+        density, squares = cost.configurations(configurations)
+        own = density * shares[index] - reward[index]
         back = np.full(len(configurations), -1)
         if len(before) and len(configurations):
             length = float(lengths[index - 1])
             steps = joints[:, None] - before[None]
-            through = costs[-1] + cost.steps(steps, length) * length
+            through = costs[-1] + cost.steps(steps, length, squares[:, None]) * length
             longest_step_s = length / (0.25 * arm.workspace.min_tip_speed_mm_s)
             through[(np.abs(steps) / arm.max_velocity).max(axis=2) > longest_step_s] = np.inf
             best = through.argmin(axis=1)

@@ -173,6 +173,18 @@ def test_a_joint_that_turns_the_other_way_is_named(joint: int, sheet49: Drawn, t
         calibrate(sheet49.arm, [sheet49.sheet(tips)])
 
 
+@pytest.mark.parametrize("joint", [1, 2])
+def test_a_curve_that_would_not_be_monotone_is_refused_by_the_name_of_its_joint(
+    joint: int, sheet49: Drawn, true_arms: list[TrueArm]
+) -> None:
+    """A joint that turns back towards the ends of its pulses, as no servo does."""
+    shape = true_arms[0].shape.copy()
+    shape[joint, 3] -= 0.8 * shape[joint, 1]
+    tips = sheet49.tips_mm(replace(true_arms[0], shape=shape))
+    with pytest.raises(CalibrationError, match=rf"curve of joint q{joint + 1} would not be monotone.*measure again"):
+        calibrate(sheet49.arm, [sheet49.sheet(tips)])
+
+
 def test_findings_are_told_in_words_and_figures(sheet49: Drawn, true_arms: list[TrueArm]) -> None:
     found = calibrate(sheet49.arm, [sheet49.sheet(sheet49.tips_mm(true_arms[0]))])
     text = "\n".join(lines(found, NOTHING))

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from hardware.compensation.servo_values import pulse_calibration
+from planner.arms.arm import Servo
 from planner.arms.arm_file import arm_file_text, load_arm
+from planner.arms.arm_text import arm_toml
 from planner.cli import main
 from tests.judge.playing import Record, read_record
 from tests.judge.true_arm import random_arm
@@ -17,6 +20,8 @@ from tests.judge.verdict import judge, measured
 
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 20" fill="none" stroke="black">
 <path d="M0 0H60V20H0ZM0 20L20 0L40 20L60 0"/><circle cx="15" cy="10" r="7"/><path d="M45 3v.01"/></svg>"""
+
+US_PER_RAD = 240.0
 
 
 def write_marks(record: Record, marks: Path, target: Path, true: object, seed: int) -> None:
@@ -86,6 +91,30 @@ def test_an_arm_that_nobody_has_measured_draws_whole_lines(
         assert (np.abs(np.diff(joints, order, axis=0)).max(axis=0) / period_s**order <= 1.001 * limit).all()
     ranges = np.array([joint.servo.pulse_range_us for joint in told.joints if joint.servo is not None])
     assert (record.pulses_us >= ranges[:, 0]).all() and (record.pulses_us <= ranges[:, 1]).all()
+
+
+def test_an_arm_without_redundancy_is_calibrated_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Six joints point the pen down. The wrist has two ways to do so, between which no leg of a pattern leads."""
+    monkeypatch.chdir(tmp_path)
+    whole = load_arm("six_joint")
+    line = tuple((at, 1500.0 + US_PER_RAD * at) for at in (-5.0, 5.0))
+    servos = [Servo(channel, line, 1, 0.0, (200.0, 2800.0), 0.5, 3.0, 0.02) for channel in range(whole.n_joints)]
+    joints = tuple(replace(joint, servo=servo) for joint, servo in zip(whole.joints, servos, strict=True))
+    arm = replace(whole, joints=joints)
+    true = random_arm(arm, np.random.default_rng(2))
+    Path("arm.toml").write_text(arm_toml(arm))
+    Path("drawing.svg").write_text(DRAWING)
+    assert main(["pattern", "--arm", "arm.toml", "-o", "pattern.csv", "--marks", "marks.csv", "--count", "25"]) == 0
+    assert main(["run", "pattern.csv", "--fast", "--record", "pulses.csv", "--quiet"]) == 0
+    write_marks(read_record(Path("pulses.csv")), Path("marks.csv"), Path("measured.csv"), true, 2)
+    assert main(["calibrate", "arm.toml", "--record", "pulses.csv", "--marks", "measured.csv", "-o", "arm2.toml"]) == 0
+
+    def off_mm(arm: str) -> float:
+        assert main(["drawing.svg", "--arm", arm, "-o", "t.csv", "--quiet"]) == 0
+        assert main(["run", "t.csv", "--fast", "--record", "p.csv", "--quiet"]) == 0
+        return judge(true, read_record(Path("p.csv"))).path_rms
+
+    assert off_mm("arm2.toml") < 0.5 < off_mm("arm.toml")
 
 
 def test_what_contradicts_itself_is_refused(

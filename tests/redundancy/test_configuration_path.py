@@ -47,10 +47,11 @@ def cheapest_of_a_grid(cost: ConfigurationCost, radii_mm: FloatArray, near: Floa
         found = found[usable_configurations(cost.kinematics, found)]
         found = np.unique(np.round(found, 9), axis=0)
         joints = arm.complete(found)
-        own = cost.configurations(found) * shares[index]
+        density, squares = cost.configurations(found)
+        own = density * shares[index]
         if len(before):
             length = float(radii_mm[index] - radii_mm[index - 1])
-            own += (totals + cost.steps(joints[:, None] - before[None], length) * length).min(axis=1)
+            own += (totals + cost.steps(joints[:, None] - before[None], length, squares[:, None]) * length).min(axis=1)
         before, totals = joints, own
     return float(totals.min() / (radii_mm[-1] - radii_mm[0]))
 

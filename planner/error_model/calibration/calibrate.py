@@ -17,7 +17,6 @@ from planner.error_model.calibration.plausible import refuse_another_sheet, refu
 from planner.error_model.calibration.sheets import Sheet, marks_of
 from planner.error_model.model import tips_at
 from planner.errors import CalibrationError
-from planner.settings import WHERE_SLACK_IS_TAKEN_UP
 
 FEWEST_MARKS = 12
 _UNTOLD = 0.8
@@ -106,7 +105,7 @@ def calibrate(arm: Arm, sheets: Sequence[Sheet]) -> Calibrated:
     before = _before_mm(parameters, sets)
     exchanged = _exchanged(found, names, np.concatenate([marks.tips_mm for marks in sets]))
     pen = replace(arm.pen, speed_mm_s=min(arm.pen.speed_mm_s, _BRISK_MM_S)) if has_pulses else arm.pen
-    calibrated = replace(arm_of(model, arm), accuracy=accuracy, pen=pen, weights=WHERE_SLACK_IS_TAKEN_UP)
+    calibrated = replace(arm_of(model, arm), accuracy=accuracy, pen=pen)
     return Calibrated(
         calibrated,
         found,

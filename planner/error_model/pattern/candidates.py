@@ -14,7 +14,7 @@ from planner.kinematics.link_clearance import KEPT_MM
 from planner.kinematics.projection import project
 from planner.redundancy.arm_model import ArmModel
 from planner.redundancy.configuration_tests import LIMIT_MARGIN
-from planner.settings import WHERE_SLACK_IS_TAKEN_UP, CanvasKind
+from planner.settings import CanvasKind
 from planner.workspace.canvas import canvas_of
 
 _ROUNDS = 40
@@ -46,7 +46,7 @@ def candidates(model: ArmModel, margin_mm: float, count: int, random: np.random.
     """So many places all over the usable canvas less a margin, the arm's redundancy used as widely as its limits
     allow, with room for the lift. Errors: PlanError where the arm has no canvas, or none that large."""
     arm, kinematics = model.arm, model.kinematics
-    configuration_map = model.configuration_map(WHERE_SLACK_IS_TAKEN_UP)
+    configuration_map = model.configuration_map()
     canvas = canvas_of(model, CanvasKind.USABLE, arm.pen.lift_mm)
     low = np.array([canvas.near_mm, canvas.right_mm]) + margin_mm
     high = np.array([canvas.far_mm, canvas.left_mm]) - margin_mm

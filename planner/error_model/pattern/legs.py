@@ -10,6 +10,8 @@ from planner.kinematics.limits import Limits, within_limits
 from planner.kinematics.projection import project
 
 _SHORTEST_S = 0.15
+_LONGEST_S = 10.0
+"""No leg of a pattern takes as long, unless its joints have to jump, for which no time is enough."""
 _ROUNDS = 4
 _MARGIN = 1.02
 RESTING = 3
@@ -44,6 +46,8 @@ def straight_leg(
         if slowing <= 1.0:
             return rested(joints)
         duration_s = n / rate_hz * slowing * _MARGIN
+        if duration_s > _LONGEST_S:
+            return None
     return None
 
 

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from hardware.compensation.servo_values import count_calibration
 from hardware.drivers.table import calibration_of
 from hardware.playback.preflight import set_points
 from hardware.playback.program import make_program
+from planner.arms.accuracy import Accuracy
 from planner.arms.arm_file import load_arm
+from planner.arms.arm_text import arm_toml
 from planner.cli import main
 from planner.trajectory import read_trajectory
 from tests.hardware.controllers.bench import Bench
@@ -49,6 +53,30 @@ def test_what_arrives_is_the_program_to_half_a_step(name: str, planned: Planned)
     program = make_program(arm, set_points(trajectory, arm, csv), trajectory.stroke, trajectory.rate_hz, park=arm.park)
     wanted = calibration.to_servos(program.positions)
     assert np.abs(told(model, len(wanted)) - wanted).max() <= STEPS[name] / 2 + 1e-9
+
+
+@pytest.mark.parametrize("calibrated", [False, True], ids=["as it comes", "slack taken up"])
+@pytest.mark.parametrize("name", ["feetech", "dynamixel"])
+def test_what_is_recorded_is_what_a_bus_hears(name: str, calibrated: bool, planned: Planned, tmp_path: Path) -> None:
+    arm, file = load_arm("so101"), tmp_path / "arm.toml"
+    if calibrated:
+        known = Accuracy(49, 0.1, 0.1, tuple((0.1 * arm.per_file_unit).tolist()))
+        lag = [replace(joint, bus=replace(joint.bus, lag_s=0.02)) for joint in arm.joints if joint.bus is not None]
+        arm = replace(arm, accuracy=known, joints=tuple(lag))
+    file.write_text(arm_toml(arm))
+    csv, model, record = planned(str(file)), MAKERS[name](), tmp_path / "record.csv"
+    assert plan_run(Bench(model), str(csv), "--driver", name, "--record", str(record), "--quiet") == 0
+    assert main(["run", str(csv), "--driver", name, "--dry-run", "--record", str(tmp_path / "dry.csv"), "--quiet"]) == 0
+    assert (tmp_path / "dry.csv").read_text() == record.read_text()
+    header, *rows = record.read_text().splitlines()
+    assert header.split(",") == ["t_s", "stroke", "x_mm", "y_mm", *(f"{joint.name}_counts" for joint in arm.joints)]
+    counts = np.array([row.split(",")[4:] for row in rows], dtype=float)
+    assert np.abs(told(model, len(counts)) - counts).max() <= 0.5 + 1e-3
+    trajectory = read_trajectory(csv)
+    program = make_program(arm, set_points(trajectory, arm, csv), trajectory.stroke, trajectory.rate_hz, park=arm.park)
+    as_meant = count_calibration(arm).to_servos(program.positions)
+    assert (len(counts) > len(as_meant)) == calibrated
+    assert calibrated or np.abs(counts - as_meant).max() < 1e-3
 
 
 def _over_a_limit(lines: list[str]) -> list[str]:
