@@ -36,7 +36,7 @@ def dashes(count: int) -> str:
 def warnings_of(folder: Path, paths: str, rate_hz: float = 100.0, tolerance_mm: float = 0.05) -> list[str]:
     drawing = folder / "drawing.svg"
     drawing.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">{paths}</svg>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" width="100mm" height="60mm" viewBox="0 0 100 60">{paths}</svg>'  # noqa: E501
     )
     return plan(drawing, PlanSettings(rate_hz=rate_hz, tolerance_mm=tolerance_mm), lambda *_: None).summary.warnings
 

@@ -84,8 +84,11 @@ def user_file() -> Path:
 def preferences_for(drawing: Path | None) -> Preferences:
     """What counts for a drawing, for all drawings of a folder, or for none. Errors: UsageError for a file that cannot
     be used."""
-    beside = [] if drawing is None else [(drawing if drawing.is_dir() else drawing.parent) / BESIDE]
-    paths = [path for path in (*beside, user_file()) if path.is_file()]
+    try:
+        beside = [] if drawing is None else [(drawing if drawing.is_dir() else drawing.parent) / BESIDE]
+        paths = [path for path in (*beside, user_file()) if path.is_file()]
+    except (OSError, ValueError):  # a name that is none: its reader says what is wrong with it
+        return Preferences(())
     return Preferences(tuple(_read(path) for path in paths))
 
 

@@ -18,7 +18,7 @@ import pytest
 from planner import pipeline
 from planner.arms.arm_file import load_arm
 from planner.cli import main
-from planner.cli.plan import _parser
+from planner.cli.plan import plan_parser
 from planner.errors import ArmFileError, PlannerError, TargetOutOfReach, UsageError
 from planner.execution import work_chunks
 from planner.execution.workers import ALONE, Workers, executor_of
@@ -90,13 +90,13 @@ def test_an_infeasible_path_is_the_same_error_whoever_meets_it(tmp_path: Path, m
     ("text", "workers"), [("1", ALONE), ("12", Workers(12)), ("tcp://host:8786", Workers(cluster="tcp://host:8786"))]
 )
 def test_workers_are_counted_or_named(text: str, workers: Workers) -> None:
-    assert _parser().parse_args(["a.svg", "--workers", text]).workers == workers
+    assert plan_parser().parse_args(["a.svg", "--workers", text]).workers == workers
 
 
 @pytest.mark.parametrize("text", ["0", "-1", "two", "1.5", "99999", "tcp://host", "http://host:80", "tcp://:80"])
 def test_other_workers_are_refused(text: str) -> None:
     with pytest.raises(UsageError, match="--workers"):
-        _parser().parse_args(["a.svg", f"--workers={text}"])
+        plan_parser().parse_args(["a.svg", f"--workers={text}"])
 
 
 def test_a_cluster_without_its_extra_names_the_extra(
