@@ -25,7 +25,7 @@ from pathlib import Path
 
 import numpy as np
 from browser.chromium import Chromium
-from browser.compare import Verdict, compare
+from browser.compare import Verdict, compare, without_background
 from browser.reference import Reference, reference
 from browser.text import compare_text
 from PIL import Image, ImageDraw
@@ -123,18 +123,12 @@ def _verdict(shown: Reference, plain: Drawn, with_text: Drawn) -> tuple[str, Ver
     page_mm = plain.page_mm
     sure = [line * _MM_PER_PX for line in shown.sure]
     if "background" in plain.skipped:
-        sure = [line for line in sure if not _is_background(line, page_mm)]
+        sure = without_background(sure, page_mm)
     shown_mm = tuple(side * _MM_PER_PX for side in shown.size_px)
     if max(abs(a - b) for a, b in zip(shown_mm, page_mm, strict=True)) > 0.005 * max(page_mm):
         return "page", None
     measured = compare(lines, sure, plain.lines, page_mm, _NOT_SURE_SLACK if shown.notes else 1.0)
     return measured.kind, measured
-
-
-def _is_background(line: FloatArray, page_mm: tuple[float, float]) -> bool:
-    """Whether a line runs around all that is on the page."""
-    slack = 0.02 * max(page_mm)
-    return bool((line.min(axis=0) <= slack).all() and (line.max(axis=0) >= np.array(page_mm) - slack).all())
 
 
 def _only_text(plain: Drawn, with_text: Drawn) -> list[FloatArray]:

@@ -51,6 +51,14 @@ def compare(
     return Verdict(kind, less, more, float(theirs[1].sum()), float(ours[1].sum()))
 
 
+def without_background(lines: Sequence[FloatArray], page: tuple[float, float]) -> list[FloatArray]:
+    """Lines but those that run around all that is on the page: the edge of a background."""
+    slack = 0.02 * max(page)
+    return [
+        line for line in lines if (line.min(axis=0) > slack).any() or (line.max(axis=0) < np.array(page) - slack).any()
+    ]
+
+
 def _length(line: FloatArray) -> float:
     return float(np.hypot(*np.diff(line, axis=0).T).sum()) if len(line) > 1 else 0.0
 

@@ -77,7 +77,8 @@ def _tiny_pattern(chance: Chance) -> str:
     turn = chance.choice(("", "rotate(30)", "scale(1e-5)", "skewX(89.9999)", "matrix(0 0 0 0 0 0)", "scale(1e9)"))
     return (
         f'<pattern id="p" width="{side}" height="{side}" patternUnits="userSpaceOnUse" patternTransform="{turn}">'
-        f'<path d="M0 0L1 1" stroke="red"/></pattern><rect width="{chance.choice((1, 100, 1e9))}" height="99" fill="url(#p)"/>'  # noqa: E501
+        f'<path d="M0 0L1 1" stroke="red"/></pattern>'
+        f'<rect width="{chance.choice((1, 100, 1e9))}" height="99" fill="url(#p)"/>'
     )
 
 
@@ -141,7 +142,8 @@ def _text(chance: Chance) -> str:
     if kind == 0:
         return f'<text x="{"1 " * n}" dy="{"1e9 " * n}" rotate="{"1 2 " * n}" font-size="{size}">{words}</text>'
     if kind == 1:
-        return f'<path id="t" d="M0 0{"l1 1-1-1" * n}"/><text font-size="{size}"><textPath href="#t">{words}</textPath></text>'  # noqa: E501
+        along = f'<path id="t" d="M0 0{"l1 1-1-1" * n}"/>'
+        return f'{along}<text font-size="{size}"><textPath href="#t">{words}</textPath></text>'
     if kind == 2:
         return f'<text textLength="{chance.choice((0, 1e-9, 1e300))}" letter-spacing="{size}">{words}</text>'
     if kind == 3:
@@ -166,7 +168,8 @@ def _many(chance: Chance) -> str:
 def _markers(chance: Chance) -> str:
     n = _size(chance, 100_000)
     return (
-        f'<marker id="k" markerWidth="{chance.choice((3, 1e9, 1e-9))}" markerHeight="3" orient="auto" viewBox="0 0 1e-9 1">'  # noqa: E501
+        f'<marker id="k" markerWidth="{chance.choice((3, 1e9, 1e-9))}" markerHeight="3" orient="auto"'
+        f' viewBox="0 0 1e-9 1">'
         f'<path d="M0 0{"l1 1" * _size(chance, 300)}"/></marker>'
         f'<path d="M0 0{"l1 1-1-1" * n}" marker-mid="url(#k)" fill="none" stroke="red"/>'
     )
@@ -196,8 +199,8 @@ def _numbers(chance: Chance) -> str:
     return (
         f'<svg viewBox="{box}" width="{number()}" height="{number()}"><g transform="{turn}">'
         f'<path d="{path}" stroke="red" stroke-width="{number()}" stroke-dasharray="{number()} {number()}"/>'
-        f'<ellipse rx="{number()}" ry="{number()}"/><rect width="{number()}" height="{number()}" rx="{number()}"/></g></svg>'  # noqa: E501
-        + _RECT
+        f'<ellipse rx="{number()}" ry="{number()}"/>'
+        f'<rect width="{number()}" height="{number()}" rx="{number()}"/></g></svg>' + _RECT
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 _BLACK = (0, 0, 0)
 _STROKE_ERROR = 1e-5
 """Chord error of strokes in masks, against the extent of their lines."""
+_CAPS: dict[str, Literal["flat", "round", "square"]] = {"butt": "flat", "round": "round", "square": "square"}
+_JOINS: dict[str, Literal["mitre", "round", "bevel"]] = {"miter": "mitre", "round": "round", "bevel": "bevel"}
 Shapes = Callable[[Iterable[Leaf]], list[Shape]]
 Outlines = Callable[[Leaf], Sequence[Subpath]]
 
@@ -225,8 +227,26 @@ def _painted(shape: Shape) -> Iterable[tuple[Paint, BaseGeometry]]:
         extent = max(float(np.ptp(path.beziers.reshape(-1, 2), axis=0).max()) for path in shape.lines)
         outlines = [Outline(path.beziers) for path in shape.lines]
         polylines = flatten_all(outlines, IDENTITY, _STROKE_ERROR * (extent + shape.stroke.width))
-        drawn = [shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0]) for line in polylines]
         yield (
             shape.stroke.paint,
-            shapely.buffer(shapely.union_all(drawn), shape.stroke.width / 2.0, cap_style="flat", join_style="mitre"),
+            shapely.union_all(
+                [
+                    shapely.buffer(
+                        _line(polyline, path.is_closed),
+                        shape.stroke.width / 2.0,
+                        cap_style=_CAPS.get(shape.stroke.cap, "flat"),
+                        join_style=_JOINS.get(shape.stroke.join, "mitre"),
+                        mitre_limit=max(shape.stroke.miter_limit, 1.0),
+                    )
+                    for polyline, path in zip(polylines, shape.lines, strict=True)
+                ]
+            ),
         )
+
+
+def _line(points: FloatArray, is_closed: bool) -> BaseGeometry:
+    import shapely
+
+    if is_closed and len(points) > 3:
+        return shapely.LinearRing(points)
+    return shapely.LineString(points) if len(points) > 1 else shapely.Point(points[0])

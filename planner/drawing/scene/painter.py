@@ -163,7 +163,14 @@ class Painter:
             width /= _scale(self._tree.px_per_user)
         else:
             width *= _scale(to_user)
-        return Stroke(_BLACK if isinstance(paint, Tiles) else paint, width)
+        style = leaf.style
+        return Stroke(
+            _BLACK if isinstance(paint, Tiles) else paint,
+            width,
+            style["stroke-linecap"],
+            style["stroke-linejoin"],
+            style.number("stroke-miterlimit"),
+        )
 
     def _markers(self, leaf: Leaf, outline: Sequence[Subpath]) -> None:
         style = leaf.style

@@ -13,6 +13,7 @@ from planner.drawing.xml_tree import Element
 from planner.errors import DrawingError
 
 ELEMENT_LIMIT = 250_000
+_NESTED_COST = 10
 DEPTH_LIMIT = 500
 SUBPATH_LIMIT = 250_000
 # Of patterns in markers in masks and so on, each of which is a walk of its own.
@@ -111,8 +112,10 @@ class Work:
     n_curves: int = 0
     n_subpaths: int = 0
 
-    def element(self, element: Element, inside: Inside | None) -> None:
-        self.n_elements += 1
+    def element(self, element: Element, inside: Inside | None, nesting: int) -> None:
+        """One more that is shown. What a marker shows in a marker, or a pattern in a pattern, counts for more: it
+        multiplies, and costs a walk each time."""
+        self.n_elements += _NESTED_COST if nesting > 1 else 1
         if self.n_elements > ELEMENT_LIMIT:
             raise DrawingError(
                 self.source,

@@ -26,10 +26,14 @@ class Paint:
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """width: in user units."""
+    """width: in user units. cap, join: as SVG calls them. What they come to is seen where a stroke is an area, in
+    masks."""
 
     paint: Paint
     width: float
+    cap: str = "butt"
+    join: str = "miter"
+    miter_limit: float = 4.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)

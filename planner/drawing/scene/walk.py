@@ -67,7 +67,7 @@ def leaves(tree: Tree, elements: Iterable[Element], place: Place) -> Iterator[Le
             if element.tag == "flowRoot":  # text of a draft of SVG 1.2, which Inkscape wrote and no browser shows
                 tree.work.skipped["flowRoot"] += 1
             continue
-        tree.work.element(element, around.inside)
+        tree.work.element(element, around.inside, around.nesting)
         style = tree.styles.of(element, around.style, around.viewport)
         if style["display"] == "none":
             continue
@@ -147,7 +147,7 @@ def _used(tree: Tree, use: Element, style: Style, inner: Place) -> Iterator[tupl
     target_style = tree.styles.of(target, inner.style, inner.viewport)
     if not is_met(target) or target_style["display"] == "none":
         return
-    tree.work.element(target, inner.inside)
+    tree.work.element(target, inner.inside, inner.nesting)
     x, y, width, height = _viewport_box(target_style)
     # The size that a `use` gives goes before that of its target.
     width = width if style["width"] == "auto" else style.length("width", "x")
