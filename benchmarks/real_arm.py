@@ -51,7 +51,7 @@ def data_sheet(arm: Arm) -> Arm:
     for joint in arm.joints:
         assert joint.servo is not None
         table = np.array(joint.servo.curve)
-        line = np.poly1d(np.polyfit(*table.T, 1))
+        line = np.poly1d(np.polyfit(table[:, 0], table[:, 1], 1))
         curve = tuple((float(at), float(np.round(line(at)))) for at in (table[0, 0], table[-1, 0]))
         joints.append(replace(joint, servo=replace(joint.servo, curve=curve, pulse_range_us=(200.0, 2600.0))))
     return replace(arm, joints=tuple(joints))

@@ -18,7 +18,7 @@ from planner.arms.arm_file import arm_file_text, known_arms, load_arm, read_arm_
 from planner.arms.arm_text import arm_toml
 from planner.arms.paper_pose import PaperPose
 from planner.arms.usual_servos import with_usual_servos
-from planner.settings import WHERE_SLACK_IS_TAKEN_UP
+from planner.settings import ConfigurationWeights
 
 
 def comments(text: str) -> list[str]:
@@ -44,7 +44,7 @@ def other(arm: Arm, number: float) -> Arm:
         joints=tuple(joints),
         paper=PaperPose(number, 1.0, 2.0, 0.01, 0.0, -0.02),
         accuracy=Accuracy(49, 0.1, 0.2, tuple(0.01 for _ in joints)),
-        weights=WHERE_SLACK_IS_TAKEN_UP,
+        weights=ConfigurationWeights(2.0, 0.5, 0.0, 1.0),
         pen=replace(arm.pen, speed_mm_s=25.0),
         closed_form=None,
     )
