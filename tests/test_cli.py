@@ -74,7 +74,7 @@ def drawing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     path = tmp_path / "arc.svg"
     path.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 40 30"><path d="M2 2 20 25 38 4"/></svg>'
-    )  # noqa: E501
+    )
     return path
 
 

@@ -139,7 +139,7 @@ def test_where_nothing_is_left_the_option_is_named(
 
 
 def test_a_plan_is_checked_and_shown_by_what_was_read(drawing: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    assert main([str(drawing), "-o", "traj.csv", "--crop", "none", "--occlude", "--quiet"]) == 0
+    assert main([str(drawing), "-o", "traj.csv", "--crop", "none", "--place", "ink", "--occlude", "--quiet"]) == 0
     assert "# crop: none\n# occlude: yes\n" in Path("traj.csv").read_text(encoding="utf-8")
     assert main(["check", "traj.csv", "--drawing", str(drawing), "--quiet"]) == 0
     other = Path("traj.csv").read_text(encoding="utf-8").replace("# crop: none\n", "")

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from planner.drawing.options import ReadingOptions
 from planner.errors import PlanError
 from planner.kinematics.limits import Limits
 from planner.motion.timed_stroke import Contact
 from planner.pipeline import plan
-from planner.settings import CanvasKind, PlanSettings
+from planner.settings import CanvasKind, PlaceKind, PlanSettings
 from planner.travel import travel_moves
 from planner.travel.branch_change import plan_branch_change
 from planner.travel.travel_moves import TravelRules
@@ -36,9 +37,15 @@ def dashes(count: int) -> str:
 def warnings_of(folder: Path, paths: str, rate_hz: float = 100.0, tolerance_mm: float = 0.05) -> list[str]:
     drawing = folder / "drawing.svg"
     drawing.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" width="100mm" height="60mm" viewBox="0 0 100 60">{paths}</svg>'  # noqa: E501
+        f'<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" width="100mm" height="60mm" viewBox="0 0 100 60">{paths}</svg>'
     )
-    return plan(drawing, PlanSettings(rate_hz=rate_hz, tolerance_mm=tolerance_mm), lambda *_: None).summary.warnings
+    return plan(
+        drawing,
+        PlanSettings(
+            rate_hz=rate_hz, tolerance_mm=tolerance_mm, place=PlaceKind.INK, reading=ReadingOptions(crop="none")
+        ),
+        lambda *_: None,
+    ).summary.warnings
 
 
 def test_a_pen_path_that_is_not_refined_to_the_end_is_off_the_drawing(

@@ -2,7 +2,7 @@
 
 One drawing holds something for every property to act on. A property that is drawn changes its lines; one that is not
 honoured is counted; one that bears on nothing leaves them as they are.
-"""  # noqa: E501
+"""
 
 from __future__ import annotations
 
@@ -217,7 +217,7 @@ DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="200" height="200" vi
 <svg id="window" x="120" y="60" width="20" height="20"><path d="M0 0l40 30" fill="none" stroke="black"/></svg>
 <text id="text" x="60" y="140" font-size="10">ab <tspan id="span">cd ef</tspan>  gh</text>
 <text id="tall" x="20" y="140" font-size="8">one</text>
-</svg>"""  # noqa: E501
+</svg>"""
 
 CHANGES = {
     "x": "#rect { x: 15px }",

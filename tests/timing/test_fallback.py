@@ -19,7 +19,7 @@ from tests.timing.rig import LIMITS, LINES, joint_curve, polar_paths, problem_of
 from tests.timing.test_path_timing import FINE_HZ, lines_made, steady_s
 
 TWO_LINES = """<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" width="100mm" height="60mm" viewBox="0 0 100 60">
-<path d="M10 10 L60 12 L80 50"/><path d="M20 40 L40 55"/></svg>"""  # noqa: E501
+<path d="M10 10 L60 12 L80 50"/><path d="M20 40 L40 55"/></svg>"""
 
 
 @settings(deadline=None, max_examples=12)
