@@ -130,7 +130,7 @@ def test_the_worst_of_a_sequence_is_told() -> None:
 
 
 def test_the_map_of_a_thick_arm_keeps_its_links_apart() -> None:
-    arm = thick(load_once("drawing_arm"))
+    arm = thick(load_once("drawing_arm"), **dict.fromkeys(("q1", "q2", "q3", "q4", "q5"), 40.0))
     clearance = kinematics_of(arm).clearance
     thin, thick_map = model_of(load_once("drawing_arm")).configuration_map(), model_of(arm).configuration_map()
     assert clearance.least_mm(thin.configurations)[0].min() < -5.0  # what it is there for
