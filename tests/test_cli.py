@@ -73,7 +73,7 @@ def drawing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "arc.svg"
     path.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 40 30"><path d="M2 2 20 25 38 4"/></svg>'
+        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 40 30"><path d="M2 2 20 25 38 4"/></svg>'
     )
     return path
 

@@ -272,7 +272,7 @@ def test_a_port_is_jogged_or_played_by_one_process_at_a_time(
 ) -> None:
     csv = tmp_path / "traj.csv"
     (tmp_path / "drawing.svg").write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 9 9"><path d="M2 2h5"/></svg>'
+        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 9 9"><path d="M2 2h5"/></svg>'
     )
     assert main([str(tmp_path / "drawing.svg"), "-o", str(csv), "--quiet"]) == 0
     with pty_line(Ssc32Model()) as far:

@@ -13,7 +13,7 @@ from planner.arms.arm_file import load_arm
 from planner.cli import main
 from planner.trajectory import Trajectory, write_trajectory
 
-DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 60 40"><path d="M0 0 H60 V40"/></svg>'
+DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 60 40"><path d="M0 0 H60 V40"/></svg>'
 
 
 @pytest.fixture

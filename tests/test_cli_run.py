@@ -34,7 +34,7 @@ RUN = [sys.executable, "-m", "planner.cli", "run"]
 def _planned(folder: Path, shapes: str) -> Path:
     drawing, target = folder / "drawing.svg", folder / "traj.csv"
     drawing.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 160 60">{shapes}</svg>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 160 60">{shapes}</svg>'
     )
     assert main([str(drawing), "-o", str(target), "--quiet"]) == 0
     drawing.unlink()
@@ -360,7 +360,7 @@ def test_every_arm_can_be_rehearsed_with_real_servos(
 ) -> None:
     drawing, csv = tmp_path / "drawing.svg", tmp_path / "traj.csv"
     drawing.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 40 20"><path d="M5 5h9"/></svg>'
+        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 40 20"><path d="M5 5h9"/></svg>'
     )
     assert main([str(drawing), "-o", str(csv), "--quiet", "--arm", arm]) == 0
     picture = ["--picture", str(tmp_path / "drawn.svg")]

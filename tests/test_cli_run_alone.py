@@ -34,7 +34,7 @@ def planned(tmp_path_factory: pytest.TempPathFactory) -> Path:
     drawing, target = folder / "drawing.svg", folder / "traj.csv"
     taps = "".join(f'<path d="M{x} {x % 3}h0"/>' for x in range(0, 160, 16))
     drawing.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 160 60">{taps}</svg>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 160 60">{taps}</svg>'
     )
     assert main([str(drawing), "-o", str(target), "--quiet"]) == 0
     return target

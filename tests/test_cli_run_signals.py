@@ -27,7 +27,7 @@ def planned(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("planned")
     drawing, target = folder / "drawing.svg", folder / "traj.csv"
     drawing.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 160 60"><circle cx="80" cy="30" r="29"/></svg>'
+        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 160 60"><circle cx="80" cy="30" r="29"/></svg>'
     )
     assert main([str(drawing), "-o", str(target), "--quiet"]) == 0
     return target

@@ -15,7 +15,7 @@ import pytest
 from planner.cli import main
 from planner.trajectory import read_trajectory
 
-DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 40 30"><path d="M2 2 20 25 38 4"/></svg>'
+DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 40 30"><path d="M2 2 20 25 38 4"/></svg>'
 LONG = "a" * 300
 
 

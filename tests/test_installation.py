@@ -33,7 +33,7 @@ sys.meta_path[sys.meta_path.index(PathFinder)] = Alone
 """
 """The environment that runs the tests has the packages too: they are looked for in the folders of the test alone."""
 START = f"{ALONE}\nfrom drawing_arm_planner.command import main\nsys.exit(main())"
-SVG = '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 9 9"><path d="M2 2 5 4"/></svg>'
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 9 9"><path d="M2 2 5 4"/></svg>'
 
 
 @pytest.fixture(scope="module")

@@ -29,7 +29,7 @@ def test_mutated_drawings(soak: ModuleType, tmp_path: Path) -> None:
     drawings = importlib.import_module("drawings")
     for index, body in enumerate(DRAWINGS):
         (tmp_path / f"{index}.svg").write_text(
-            f'<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 30 20">{body}</svg>'
+            f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 30 20">{body}</svg>'
         )
     kinds = [drawings.attempt((tmp_path,), 7, item, tmp_path / "desk") for item in range(-1, 30)]
     assert [kind for kind in kinds if not kind[0].startswith("fine")] == []

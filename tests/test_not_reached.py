@@ -37,7 +37,7 @@ def dashes(count: int) -> str:
 def warnings_of(folder: Path, paths: str, rate_hz: float = 100.0, tolerance_mm: float = 0.05) -> list[str]:
     drawing = folder / "drawing.svg"
     drawing.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" width="100mm" height="60mm" viewBox="0 0 100 60">{paths}</svg>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" width="100mm" height="60mm" viewBox="0 0 100 60">{paths}</svg>'
     )
     return plan(
         drawing,

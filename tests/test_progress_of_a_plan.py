@@ -13,7 +13,7 @@ from planner.settings import PlanSettings
 def test_the_bar_goes_through_all_stages_and_never_back(tmp_path: Path) -> None:
     drawing = tmp_path / "drawing.svg"
     drawing.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 9 9"><path d="M2 2 5 4M7 7l1 0"/></svg>'
+        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 9 9"><path d="M2 2 5 4M7 7l1 0"/></svg>'
     )
     told: list[tuple[str, int, int]] = []
     plan(drawing, PlanSettings(), lambda *now: told.append(now))

@@ -47,7 +47,7 @@ def arm(arm_file: Path) -> Arm:
 def drawing(tmp_path: Path) -> Path:
     file = tmp_path / "triangle.svg"
     file.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 220 90">{TRIANGLE}</svg>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 220 90">{TRIANGLE}</svg>',
         encoding="utf-8",
     )
     return file
@@ -87,7 +87,7 @@ def test_a_long_stroke_that_begins_where_both_reach_keeps_to_the_one_that_reache
     corners = f'<path d="M0,0 h1"/><path d="M{width},{height} h-1"/>'
     file, output = tmp_path / "zigzag.svg", tmp_path / "zigzag.csv"
     file.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" width="{width}mm" height="{height}mm" fill="none" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" fill="none" '
         f'stroke="black" viewBox="0 0 {width} {height}"><path d="M{zigzag}"/>{corners}</svg>'
     )
     assert main([str(file), "-o", str(output), "--arm", str(arm_file), "--no-fit", "--quiet"]) == 0

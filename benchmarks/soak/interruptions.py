@@ -36,7 +36,7 @@ from tests.hardware.emulator.emulator import Build, LockStep, build, in_lock_ste
 
 _CONFIGS = Path(__file__).resolve().parents[2] / "configs"
 _DRAWING = (
-    '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 90 40"><path d="'
+    '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" viewBox="0 0 90 40"><path d="'
     + "".join(f"M{x} 5v8" for x in range(5, 85, 4))
     + '"/>'
     + "".join(f'<path d="M{x} 18c4 -4 8 6 12 0"/>' for x in range(5, 80, 16))

@@ -35,7 +35,7 @@ _EVERY_S = 0.005
 def drawing(tmp_path_factory: pytest.TempPathFactory) -> Path:
     target = tmp_path_factory.mktemp("drawing") / "drawing.svg"
     target.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 60 30"><path d="M5 5 15 25 25 5"/>'
+        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 60 30"><path d="M5 5 15 25 25 5"/>'
         '<path d="M30 15h0"/><circle cx="45" cy="15" r="8"/></svg>'
     )
     return target

@@ -28,7 +28,7 @@ from tests.hardware.real_time import in_real_time
 
 _ARM = load_arm("drawing_arm")
 _STROKES = 5
-_DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 90 30">
+_DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 90 30">
 <path d="M2 20 C 10 0 20 30 30 12"/><path d="M42 6h0"/><circle cx="42" cy="20" r="8"/>
 <path d="M58 28 L70 4 L82 28"/><path d="M64 20h12"/></svg>"""
 _WORST_MM = 0.15

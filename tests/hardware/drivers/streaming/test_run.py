@@ -35,7 +35,7 @@ def planned(tmp_path: Path) -> Planned:
     def plan(arm: str) -> Path:
         drawing, csv = tmp_path / "drawing.svg", tmp_path / "traj.csv"
         drawing.write_text(
-            '<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 60 60"><path d="M0 0h0M20 8h0M40 0 l12 5"/></svg>'
+            '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 60 60"><path d="M0 0h0M20 8h0M40 0 l12 5"/></svg>'
         )
         assert main([str(drawing), "-o", str(csv), "--arm", arm, "--no-fit", "--quiet"]) == 0
         return csv

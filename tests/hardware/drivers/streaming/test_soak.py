@@ -18,7 +18,7 @@ def test_whatever_dies_or_is_reset_the_drawing_gets_done(
     drawing, csv = tmp_path / "drawing.svg", tmp_path / "traj.csv"
     strokes = "".join(f"M{x} 5v8" for x in range(5, 25, 2)) + "M5 20h0M15 20h0"
     drawing.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" stroke="red" stroke-linecap="round" viewBox="0 0 90 30"><path d="{strokes}"/></svg>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 90 30"><path d="{strokes}"/></svg>'
     )
     assert main([str(drawing), "-o", str(csv), "--quiet"]) == 0
     soak = Soak(csv, driver)
