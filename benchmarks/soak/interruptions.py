@@ -47,10 +47,10 @@ _STRIKES_WITHIN_S = 5.0
 _LEFT_ALONE_S = (0.0, 0.5, 8.0)
 """At most so long passes before somebody resumes: the controller may still play, stand, or have given its host up."""
 _STARTS_S = 0.3
-_OFF_MM, _WORST_MM = 0.05, 0.1
+_OFF_MM, _WORST_MM = 0.07, 0.1
 """Beside its line, of 999 in 1000 pieces of ink and of all: rounding to half microseconds comes to 0.022 mm at most,
-and pulses that are 20 ms apart, one servo's after another's, to some 0.03 mm where the pen is lifted in a tenth of a
-second."""
+and pulses that are 20 ms apart, one servo's after another's, to some 0.05 mm more where the pen is lifted in a tenth of
+a second."""
 _RUNS_PER_DRAWING = 400
 _FASTEST_MM_S = 80.0
 _SET_POINT_S = 0.012
