@@ -22,6 +22,11 @@ def rotation(angle_deg: float) -> FloatArray:
     return np.array([[c, -s, 0.0], [s, c, 0.0]])
 
 
+def scale_of(affine: FloatArray) -> float:
+    """What it makes of a unit of length, in the geometric mean of all directions."""
+    return float(np.sqrt(abs(np.linalg.det(affine[:, :2]))))
+
+
 def inverse(affine: FloatArray) -> FloatArray:
     """The map that undoes `affine`. Errors: numpy.linalg.LinAlgError where it squeezes the plane to a line."""
     back = np.linalg.inv(affine[:, :2])

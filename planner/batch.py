@@ -9,6 +9,7 @@ from pathlib import Path
 from planner.errors import OutputError, PlannerError, UsageError
 from planner.execution.workers import ALONE, Workers, executor_of
 from planner.pipeline import plan
+from planner.progress import unreported
 from planner.settings import PlanSettings
 from planner.summary import PlanSummary
 from planner.trajectory import write_trajectory
@@ -71,13 +72,10 @@ def plan_all(jobs: Sequence[Job], workers: Workers) -> Iterator[Outcome]:
 
 def _planned(job: Job) -> Outcome:
     try:
-        result = plan(job.drawing, job.settings, _unheard)
+        # Whole drawings are counted, not what is done within one.
+        result = plan(job.drawing, job.settings, unreported)
         if job.target is not None:
             write_trajectory(result.trajectory, job.target)
     except (PlannerError, MemoryError) as error:
         return Outcome(job, None, error)
     return Outcome(job, result.summary, None)
-
-
-def _unheard(stage: str, done: int, total: int) -> None:
-    """Progress within a drawing: with many of them, whole drawings are counted instead."""

@@ -36,6 +36,7 @@ from planner.placement.clip import clip_strokes
 from planner.placement.pieces import Piece
 from planner.placement.short_gaps import SHORTEST_GAP_MM, gaps_to_draw
 from planner.placement.split import split_strokes
+from planner.polyline_length import polyline_length
 from planner.progress import Report
 from planner.redundancy.arm_model import ArmModel
 from planner.redundancy.configuration_map import ConfigurationMap
@@ -125,7 +126,7 @@ def require_bounded_whole(drawings: Sequence[PenDrawing]) -> None:
     seconds = np.zeros(3)
     for drawing in drawings:
         arm, settings = drawing.context.model.arm, drawing.context.settings
-        drawn_mm = sum(float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in drawing.strokes)
+        drawn_mm = sum(map(polyline_length, drawing.strokes))
         n_strokes = len(drawing.strokes)
         lowered_mm = n_strokes * arm.pen.clearance_mm + drawing.lift_mm
         seconds += (
@@ -193,7 +194,7 @@ def _strokes(
 
 def _drawn(strokes: Sequence[FloatArray]) -> LeftOut:
     """How much strokes are: what is left out without them."""
-    lengths = [float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in strokes if len(stroke) > 1]
+    lengths = [polyline_length(stroke) for stroke in strokes if len(stroke) > 1]
     return LeftOut(sum(lengths), len(strokes) - len(lengths))
 
 

@@ -2,39 +2,21 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 
 from planner.errors import UsageError
 from planner.pens import Pen, colour_of
+from planner.toml_file import read_toml
 
-EXAMPLE = """\
-[[pen]]
-name = "blue"
-colour = "#0050c8"
-width_mm = 0.5
-speed_mm_s = 40
-layers = ["sky", "sea"]"""
-"""What such a file looks like."""
 _NUMBERS = ("width_mm", "speed_mm_s", "lift_mm", "lowering_speed_mm_s")
 _KEYS = ("name", "colour", "layers", *_NUMBERS)
-_SIZE_LIMIT_BYTES = 1 << 20
 _MOST_PENS = 100
 
 
 def read_pens(path: Path) -> tuple[Pen, ...]:
     """The pens of a file, in its order. Errors: UsageError that names file, pen and key."""
-    try:
-        with path.open("rb") as file:
-            content = file.read(_SIZE_LIMIT_BYTES + 1)
-        if len(content) > _SIZE_LIMIT_BYTES:
-            raise UsageError(f"{path}: larger than {_SIZE_LIMIT_BYTES >> 20} MB")
-        tables = tomllib.loads(content.decode())
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise UsageError(f"{path}: not readable TOML: {error}") from error
+    tables = read_toml(path)
     listed = tables.get("pen")
     if set(tables) - {"pen"} or not isinstance(listed, list) or not listed or len(listed) > _MOST_PENS:
         raise UsageError(f"{path}: holds tables [[pen]], 1 to {_MOST_PENS}, and nothing else")

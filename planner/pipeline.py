@@ -9,6 +9,7 @@ from itertools import chain, pairwise
 
 import numpy as np
 
+from planner.affine import scale_of
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
@@ -26,7 +27,7 @@ from planner.motion.timed_stroke import TimedStroke
 from planner.pen_drawing import PenDrawing, lift_mm, require_bounded_whole
 from planner.phases import phases_of
 from planner.placement.place import Placed, placed
-from planner.progress import Report
+from planner.progress import Report, unreported
 from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
 from planner.stroke_figures import stroke_figures
@@ -105,13 +106,9 @@ def placed_strokes(
     """Strokes (n, 2) in arm mm, placed and in the order that they are planned in, and what was left out on the way.
     Errors: PlannerError."""
     place, drawings = _ordered(
-        read_drawing(drawing_file, options=settings.reading), PlanContext(model, settings), _unheard
+        read_drawing(drawing_file, options=settings.reading), PlanContext(model, settings), unreported
     )
     return list(chain.from_iterable(one.strokes for one in drawings)), _told(place.drawing, drawings)
-
-
-def _unheard(stage: str, done: int, total: int) -> None:
-    """Nobody waits."""
 
 
 def _ordered(drawing: Drawing, context: PlanContext, report: Report) -> tuple[Placed, list[PenDrawing]]:
@@ -122,7 +119,7 @@ def _ordered(drawing: Drawing, context: PlanContext, report: Report) -> tuple[Pl
     place = placed(drawing, canvas, settings)
     chosen = chosen_layers(place.drawing, settings.layers)
     place = replace(place, drawing=chosen)
-    mm_per_unit = float(np.sqrt(abs(np.linalg.det(place.svg_to_arm[:, :2]))))
+    mm_per_unit = scale_of(place.svg_to_arm)
     report("joining", 0, 1)
     own_mm_s = pen_speed_mm_s(model.arm, settings)
     drawings = []

@@ -10,6 +10,7 @@ from typing import IO, TYPE_CHECKING, cast
 
 import numpy as np
 
+from planner.affine import scale_of
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from planner.drawing.drawing import Drawing
@@ -115,16 +116,19 @@ class Trajectory:
         joints = dict(zip(self.columns, self.positions.T, strict=True))
         return pandas.DataFrame({"t_s": self.times_s, **joints, "pen": self.pen.astype(int), "stroke": self.stroke})
 
+    @property
+    def svg_to_arm(self) -> FloatArray:
+        """(2, 3) `svg_to_arm_mm` as a matrix."""
+        a, b, c, d, e, f = self.svg_to_arm_mm
+        return np.array([[a, c, e], [b, d, f]])
+
     def all_of(self, drawing: Drawing) -> Drawing:
         """What of the drawing the header tells that was drawn, as often as it was. Errors: UsageError for a layer that
         is not there."""
-        a, b, c, d, e, f = self.svg_to_arm_mm
         drawing = chosen_layers(drawing, self.chosen.layers)
         if self.chosen.by is not None:
-            drawing = only(drawing, self.chosen.by, self.chosen.kinds, float(np.sqrt(abs(a * d - b * c))))
-        if self.placement.copies is None:
-            return drawing
-        return self.placement.copies.of(drawing, np.array([[a, c, e], [b, d, f]]))
+            drawing = only(drawing, self.chosen.by, self.chosen.kinds, scale_of(self.svg_to_arm))
+        return drawing if self.placement.copies is None else self.placement.copies.of(drawing, self.svg_to_arm)
 
     def part(self, first: int, last: int, pen: PenInk, chosen: Chosen) -> Trajectory:
         """Samples `first` to `last`, the arm at rest at both: what one pen draws of it, as a trajectory of its own."""

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-
+from planner.affine import scale_of
 from planner.arrays import FloatArray
 from planner.drawing.drawing import Drawing, Outline
 from planner.drawing.pen_groups import kind_of, wanted_layers
@@ -17,7 +16,7 @@ def told_by(chosen: Chosen, drawing: Drawing, affine: FloatArray) -> Callable[[O
     not there."""
     layers = wanted_layers(drawing, chosen.layers)
     by, kinds = chosen.by, chosen.kinds
-    mm_per_unit = float(np.sqrt(abs(np.linalg.det(affine[:, :2]))))
+    mm_per_unit = scale_of(affine)
 
     def is_chosen(line: Outline) -> bool:
         return line.layer in layers and (by is None or kind_of(line, by, mm_per_unit) in kinds)

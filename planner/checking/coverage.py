@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
+from planner.affine import scale_of
 from planner.arrays import BoolArray, FloatArray
 from planner.checking.between import Sweep
 from planner.checking.check_result import Finding, Place
 from planner.checking.chosen import told_by
-from planner.checking.mapping import map_findings, map_trouble, user_to_arm
+from planner.checking.mapping import map_findings, map_trouble
 from planner.checking.pen import place_of
 from planner.checking.polyline import DenseLines, dense_lines, joined_lines
 from planner.checking.repeats import most_repeated
@@ -41,7 +42,7 @@ def drawing_findings(
     trouble = map_trouble(trajectory, drawing)
     if trouble:
         return [Finding("svg_to_arm_mm", False, remark=trouble)]
-    affine = user_to_arm(trajectory)
+    affine = trajectory.svg_to_arm
     lines = _wanted(trajectory, drawing)
     pen_lines = [_pen_lines(sweep) for sweep in sweeps]
     shape = map_findings(trajectory, drawing, tolerance_mm)
@@ -77,30 +78,26 @@ def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: Floa
 
 def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
     """The lines of what the header tells that was drawn, as often as it was."""
-    affine, copies = user_to_arm(trajectory), trajectory.placement.copies
+    affine, copies = trajectory.svg_to_arm, trajectory.placement.copies
     is_wanted = told_by(trajectory.chosen, drawing, affine)
     if not trajectory.fill.draws_anything:
         lines = wanted_lines(drawing, affine, FLATTENING_MM, is_wanted)
     else:
         from planner.drawing.fill.fill import fill_lines, is_wide
 
+        mm_per_unit = scale_of(affine)
         lines = wanted_lines(
             drawing,
             affine,
             FLATTENING_MM,
-            lambda line: is_wanted(line) and not is_wide(line, trajectory.fill, affine),
+            lambda line: is_wanted(line) and not is_wide(line, trajectory.fill, mm_per_unit),
         )
         filling = [line for line in fill_lines(drawing, trajectory.fill, affine) if is_wanted(line)]
         within = flatten_all(filling, affine, FLATTENING_MM)
         lines = WantedLines([*lines.allowed, *within], [*lines.required, *within])
     if copies is None:
         return lines
-    # To the right on the paper is -y of the arm, down is -x.
-    steps = [
-        np.array([-row * copies.step_y_mm, -column * copies.step_x_mm])
-        for row in range(copies.rows)
-        for column in range(copies.columns)
-    ]
+    steps = copies.steps_mm
     return WantedLines(*([line + step for step in steps for line in some] for some in (lines.allowed, lines.required)))
 
 

@@ -22,15 +22,9 @@ _PAGE_TO_ARM = np.array([[0.0, -1.0], [-1.0, 0.0]])
 """Of a page that lies before the arm, its top away from it."""
 
 
-def user_to_arm(trajectory: Trajectory) -> FloatArray:
-    """(2, 3) `svg_to_arm_mm` as a matrix."""
-    a, b, c, d, e, f = trajectory.svg_to_arm_mm
-    return np.array([[a, c, e], [b, d, f]])
-
-
 def map_trouble(trajectory: Trajectory, drawing: Drawing) -> str:
     """Why the map means nothing to this drawing, or nothing."""
-    affine = user_to_arm(trajectory)
+    affine = trajectory.svg_to_arm
     if _is_flat(affine):
         return "squeezes the drawing to a line"
     size_mm = float(np.ptp(_corners(drawing, affine), axis=0).max())
@@ -39,7 +33,7 @@ def map_trouble(trajectory: Trajectory, drawing: Drawing) -> str:
 
 def map_findings(trajectory: Trajectory, drawing: Drawing | None, tolerance_mm: float) -> list[Finding]:
     """The map by itself and, as it can be told with the drawing alone, its shape, scale and turn."""
-    affine, told = user_to_arm(trajectory), trajectory.placement
+    affine, told = trajectory.svg_to_arm, trajectory.placement
     trouble = "squeezes the drawing to a line" if _is_flat(affine) else ""
     if not trouble and (np.linalg.det(affine[:, :2]) > 0) != told.mirror:
         trouble = (

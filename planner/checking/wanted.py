@@ -17,6 +17,7 @@ import shapely
 from shapely.affinity import affine_transform
 from shapely.geometry.base import BaseGeometry
 
+from planner.affine import inverse
 from planner.arrays import FloatArray
 from planner.checking.filled import filled
 from planner.drawing.drawing import Drawing, Outline
@@ -139,8 +140,8 @@ class _Cuts:
         return self._known[id(region)]
 
     def _page(self) -> BaseGeometry:
-        back = np.linalg.inv(np.vstack((self._scene.user_to_page, (0.0, 0.0, 1.0))))[:2]
-        return self._shown(_moved(shapely.box(0.0, 0.0, *self._scene.page_mm), back))
+        page = shapely.box(0.0, 0.0, *self._scene.page_mm)
+        return self._shown(_moved(page, inverse(self._scene.user_to_page)))
 
     def _cover(self, shape: Shape) -> BaseGeometry:
         """What the shape hides of all that is painted before it."""
@@ -167,9 +168,7 @@ class _Cuts:
 
 def _told(shape: Shape) -> Outline:
     """What is told of the lines of a shape: layer, colour and width."""
-    paint = shape.stroke.paint if shape.stroke is not None else shape.fill
-    colour = (0, 0, 0) if paint is None else paint.colour
-    return Outline(np.empty((0, 4, 2)), shape.layer, colour, 0.0 if shape.stroke is None else shape.stroke.width)
+    return Outline(np.empty((0, 4, 2)), shape.layer, shape.colour, shape.width)
 
 
 def _torn(line: BaseGeometry, overlay: _Overlay) -> list[BaseGeometry]:

@@ -59,6 +59,8 @@ if TYPE_CHECKING:
     from planner.trajectory import Trajectory
 
 USUAL_DEDUP_MM = 0.05
+_CHORD_MM = 0.01
+"""What curves are off by where their lengths are listed."""
 
 _DESCRIPTION = """\
 Plan the motion of an arm that draws DRAWING.svg with a pen, and write it as a trajectory of joint positions.
@@ -193,12 +195,15 @@ def _of_pen(target: Path, index: int, part: Trajectory) -> Path:
 
 
 def _layers(drawing_file: Path) -> list[str]:
-    from planner.drawing.length import length_mm as page_length_mm
+    from planner.drawing.flatten import flatten_all
     from planner.drawing.pen_groups import described
     from planner.drawing.svg import read_drawing
+    from planner.polyline_length import polyline_length
 
     drawing = read_drawing(drawing_file)
-    return described(drawing, lambda outlines: page_length_mm(outlines, drawing.user_to_page))
+    return described(
+        drawing, lambda outlines: sum(map(polyline_length, flatten_all(outlines, drawing.user_to_page, _CHORD_MM)))
+    )
 
 
 def preferred(parser: Parser, arguments: list[str]) -> argparse.Namespace:

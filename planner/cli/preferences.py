@@ -16,20 +16,19 @@ from __future__ import annotations
 
 import argparse
 import os
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from planner import DISTRIBUTION
 from planner.errors import UsageError
+from planner.toml_file import read_toml
 
 BESIDE = "plan.toml"
 USER_FILE_VARIABLE = "PLAN_CONFIG"
 _TABLES = ("options", "presets", "arms")
 _NEVER = frozenset({"help", "version", "output", "preset", "report"})
 """What is said each time."""
-_SIZE_LIMIT_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,16 +143,7 @@ def _value(action: argparse.Action, where: str, option: str, value: object) -> o
 
 
 def _read(path: Path) -> PreferenceFile:
-    try:
-        with path.open("rb") as file:
-            content = file.read(_SIZE_LIMIT_BYTES + 1)
-        if len(content) > _SIZE_LIMIT_BYTES:
-            raise UsageError(f"{path}: larger than {_SIZE_LIMIT_BYTES >> 20} MB")
-        tables = tomllib.loads(content.decode())
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read: {error.strerror}") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise UsageError(f"{path}: not readable TOML: {error}") from error
+    tables = read_toml(path)
     for name, table in tables.items():
         if name not in _TABLES or not isinstance(table, dict):
             raise UsageError(f"{path}: '{name:.40}' is no table of it; there are {', '.join(_TABLES)}")

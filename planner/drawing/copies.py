@@ -8,9 +8,8 @@ import numpy as np
 
 from planner.arrays import FloatArray, frozen
 from planner.drawing.drawing import Drawing, Outline
+from planner.drawing.path_data import CURVE_LIMIT
 from planner.errors import DrawingError
-
-_CURVE_LIMIT = 2_500_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,24 +26,21 @@ class Copies:
     def count(self) -> int:
         return self.columns * self.rows
 
+    @property
+    def steps_mm(self) -> FloatArray:
+        """(count, 2) from the first to each copy, arm mm, row by row: to the right is -y of the arm, down is -x."""
+        row, column = np.divmod(np.arange(self.count), self.columns)
+        return np.column_stack((-row * self.step_y_mm, -column * self.step_x_mm))
+
     def of(self, drawing: Drawing, svg_to_arm: FloatArray) -> Drawing:
         """The drawing with all copies, row by row, for the map (2, 3) that places the first. Errors: DrawingError where
         they are too many."""
         if self.count == 1:
             return drawing
-        if self.count * sum(len(outline.beziers) for outline in drawing.outlines) > _CURVE_LIMIT:
-            raise DrawingError(
-                drawing.source, f"its {self.count} copies have more than {_CURVE_LIMIT} lines and curves"
-            )
-        # To the right is -y of the arm, down is -x.
-        to_user = np.linalg.inv(svg_to_arm[:, :2])
-        right, down = to_user @ (0.0, -self.step_x_mm), to_user @ (-self.step_y_mm, 0.0)
-        outlines = tuple(
-            _moved(outline, column * right + row * down)
-            for row in range(self.rows)
-            for column in range(self.columns)
-            for outline in drawing.outlines
-        )
+        if self.count * sum(len(outline.beziers) for outline in drawing.outlines) > CURVE_LIMIT:
+            raise DrawingError(drawing.source, f"its {self.count} copies have more than {CURVE_LIMIT} lines and curves")
+        steps = self.steps_mm @ np.linalg.inv(svg_to_arm[:, :2]).T
+        outlines = tuple(_moved(outline, step) for step in steps for outline in drawing.outlines)
         return replace(drawing, outlines=outlines, scene=None)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from planner.affine import scale_of
 from planner.drawing.cut.area import have_area
 from planner.drawing.drawing import Outline
 from planner.drawing.options import ReadingOptions
@@ -77,8 +78,7 @@ def _seen(shapes: Sequence[Shape], lines: list[list[Subpath]], scene: Scene) -> 
     from planner.drawing.cut.occlude import occluded
     from planner.drawing.cut.region import region
 
-    scale = np.sqrt(abs(np.linalg.det(scene.user_to_page[:, :2])))
-    tolerance = _HIDING * max(scene.page_mm) / float(scale)
+    tolerance = _HIDING * max(scene.page_mm) / scale_of(scene.user_to_page)
     covers = [
         shapely.intersection_all([region(shape.outline, shape.is_even_odd, tolerance), *shape.clips])
         if shape.fill is not None and shape.fill.is_opaque
@@ -102,7 +102,4 @@ def _without_repeats(shapes: Sequence[Shape], lines: Sequence[Sequence[Subpath]]
 
 
 def _outline(shape: Shape, path: Subpath) -> Outline:
-    paint = shape.stroke.paint if shape.stroke is not None else shape.fill
-    colour = (0, 0, 0) if paint is None else paint.colour
-    width = 0.0 if shape.stroke is None else shape.stroke.width
-    return Outline(path.beziers, shape.layer, colour, width, path.gap)
+    return Outline(path.beziers, shape.layer, shape.colour, shape.width, path.gap)

@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.drawing.join import is_closed
+from planner.polyline_length import polyline_length
 
 _PARALLEL = 0.98
 """Cosine of the largest angle between lines that are the same one."""
@@ -38,8 +39,7 @@ def simplified(strokes: Sequence[FloatArray], within_mm: float) -> list[FloatArr
 
 def longer(strokes: Sequence[FloatArray], least_mm: float) -> tuple[list[FloatArray], list[FloatArray]]:
     """Strokes that are at least so long, and those that are not; taps are no short strokes."""
-    lengths = [float(np.hypot(*np.diff(stroke, axis=0).T).sum()) for stroke in strokes]
-    is_kept = [len(stroke) == 1 or length >= least_mm for stroke, length in zip(strokes, lengths, strict=True)]
+    is_kept = [len(stroke) == 1 or polyline_length(stroke) >= least_mm for stroke in strokes]
     return (
         [stroke for stroke, kept in zip(strokes, is_kept, strict=True) if kept],
         [stroke for stroke, kept in zip(strokes, is_kept, strict=True) if not kept],
@@ -73,7 +73,7 @@ def without_doubles(strokes: Sequence[FloatArray], within_mm: float) -> tuple[li
         elif len(stroke) > 1:
             pieces = _pieces(stroke, dense.along_mm[part], doubled)
             kept += pieces
-            dropped_mm += _length(stroke) - sum(map(_length, pieces))
+            dropped_mm += polyline_length(stroke) - sum(map(polyline_length, pieces))
     return kept, dropped_mm
 
 
@@ -89,7 +89,7 @@ class _Dense:
 
     @staticmethod
     def of(strokes: Sequence[FloatArray], spacing_mm: float) -> _Dense:
-        total_mm = sum(map(_length, strokes))
+        total_mm = sum(map(polyline_length, strokes))
         spacing_mm = max(spacing_mm, total_mm / _MOST_POINTS)
         points, alongs, directions, counts = [], [], [], []
         for stroke in strokes:
@@ -150,8 +150,4 @@ def _pieces(stroke: FloatArray, along_mm: FloatArray, doubled: BoolArray) -> lis
         inside = (arc > low) & (arc < high)
         ends = [np.array([np.interp(at, arc, column) for column in stroke.T]) for at in (low, high)]
         pieces.append(np.concatenate((ends[0][None], stroke[inside], ends[1][None])))
-    return [piece for piece in pieces if _length(piece) > 0.0]
-
-
-def _length(stroke: FloatArray) -> float:
-    return float(np.hypot(*np.diff(stroke, axis=0).T).sum())
+    return [piece for piece in pieces if polyline_length(piece) > 0.0]

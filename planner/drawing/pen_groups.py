@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 
@@ -152,7 +152,7 @@ def _unlikeness(one: Colour, other: Colour) -> float:
     return float((2.0 + mean / 256.0) * red**2 + 4.0 * green**2 + (2.0 + (255.0 - mean) / 256.0) * blue**2)
 
 
-def described(drawing: Drawing, length_mm: Callable[[Iterable[Outline]], float]) -> list[str]:
+def described(drawing: Drawing, length_mm: Callable[[Sequence[Outline]], float]) -> list[str]:
     """A line for each layer: name, number of lines and taps, their length on the page, colours."""
     lines = []
     for name in layer_names(drawing):

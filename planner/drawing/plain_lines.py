@@ -7,9 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
+from planner.affine import scale_of
 from planner.arrays import FloatArray
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
+from planner.pens import hex_of
 
 _DECIMALS = 6
 _PEN_MM = 0.3
@@ -29,10 +31,9 @@ class PlainLine:
 
 def plain_lines(drawing: Drawing, chord_error_mm: float) -> list[PlainLine]:
     """The outlines in the order of painting. Errors: PlanError where they come to too many points."""
-    (a, c, _), (b, d, _) = drawing.user_to_page.tolist()
-    scale = abs(a * d - b * c) ** 0.5
+    scale = scale_of(drawing.user_to_page)
     return [
-        PlainLine(points, outline.layer, "#{:02x}{:02x}{:02x}".format(*outline.colour), scale * outline.width)
+        PlainLine(points, outline.layer, hex_of(outline.colour), scale * outline.width)
         for outline, points in zip(
             drawing.outlines, flatten_all(drawing.outlines, drawing.user_to_page, chord_error_mm), strict=True
         )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from planner.arrays import BoolArray, FloatArray
+from planner.polyline_length import polyline_length
 
 _STEP_MM = 0.25
 
@@ -29,7 +30,7 @@ def clip_strokes(
             continue
         runs = [run for run in _true_runs(points, inside) if len(run) > 1]
         lost_whole += not runs
-        lost_mm += _length(points) - sum(map(_length, runs))
+        lost_mm += polyline_length(points) - sum(map(polyline_length, runs))
         kept.extend(runs)
     return kept, lost_mm, lost_whole
 
@@ -67,7 +68,3 @@ def _cut_at_border(stroke: FloatArray, reach_mm: float) -> FloatArray:
 def _true_runs(points: FloatArray, inside: BoolArray) -> list[FloatArray]:
     edges = np.flatnonzero(np.diff(np.concatenate(([0], inside.astype(np.int8), [0]))))
     return [points[first:last] for first, last in zip(edges[0::2], edges[1::2], strict=True)]
-
-
-def _length(points: FloatArray) -> float:
-    return float(np.hypot(*np.diff(points, axis=0).T).sum()) if len(points) > 1 else 0.0

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from planner.arrays import FloatArray
 from planner.drawing.drawing import Outline
 from planner.drawing.flatten import flatten_all
+from planner.polyline_length import polyline_length
 
 SHORTEST_GAP_MM = 0.5
 """About as wide as a pen's line."""
@@ -26,5 +25,4 @@ def gaps_to_draw(outlines: Sequence[Outline], svg_to_arm: FloatArray) -> list[Ou
         if outline.gap is not None and outline.gap[-1, 3].tobytes() in starts
     ]
     lines = flatten_all(gaps, svg_to_arm, _CHORD_ERROR_MM)
-    lengths = (float(np.hypot(*np.diff(line, axis=0).T).sum()) for line in lines)
-    return [gap for gap, length in zip(gaps, lengths, strict=True) if length < _LENGTH_MM]
+    return [gap for gap, line in zip(gaps, lines, strict=True) if polyline_length(line) < _LENGTH_MM]

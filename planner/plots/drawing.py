@@ -73,8 +73,7 @@ def _wanted(trajectory: Trajectory, drawing: Drawing | None) -> tuple[FloatArray
     """The outlines on the paper: lines with a row of NaN after each, and the places of pen taps."""
     if drawing is None:
         return np.empty((0, 2)), np.empty((0, 2))
-    a, b, c, d, e, f = trajectory.svg_to_arm_mm
-    strokes = flatten_all(trajectory.all_of(drawing).outlines, np.array([[a, c, e], [b, d, f]]), _FLATTEN_TOLERANCE_MM)
+    strokes = flatten_all(trajectory.all_of(drawing).outlines, trajectory.svg_to_arm, _FLATTEN_TOLERANCE_MM)
     gap = np.full((1, 2), np.nan)
     lines = [part for stroke in strokes if len(stroke) > 1 for part in (stroke, gap)]
     taps = [stroke for stroke in strokes if len(stroke) == 1]

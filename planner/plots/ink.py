@@ -11,6 +11,7 @@ from matplotlib.ticker import MultipleLocator
 
 from planner.arrays import FloatArray, IntArray
 from planner.counted import counted
+from planner.pens import hex_of
 from planner.plots.look import USUAL, Look
 from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, round_step
 from planner.plots.samples import joined_while_drawing
@@ -83,7 +84,7 @@ def _pens(trajectory: Trajectory) -> list[tuple[str, str, float, IntArray]]:
     return [
         (
             pen.name,
-            "#{:02x}{:02x}{:02x}".format(*pen.colour),
+            hex_of(pen.colour),
             pen.width_mm or _USUAL_WIDTH_MM,
             np.flatnonzero(which == index),
         )

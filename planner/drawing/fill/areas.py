@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
 import shapely
 from shapely.affinity import affine_transform
 from shapely.geometry.base import BaseGeometry
 
+from planner.affine import inverse, scale_of
 from planner.arrays import FloatArray
 from planner.drawing.cut.region import region
 from planner.drawing.options import ReadingOptions
@@ -33,8 +33,7 @@ class Area:
 def areas(scene: Scene, reading: ReadingOptions, svg_to_arm: FloatArray) -> Iterator[Area]:
     """In the order of painting. svg_to_arm: (2, 3)."""
     shapes = scene.shapes[n_backgrounds(scene) :]
-    scale = float(np.sqrt(abs(np.linalg.det(scene.user_to_page[:, :2]))))
-    tolerance = _FLATTENING * max(scene.page_mm) / scale
+    tolerance = _FLATTENING * max(scene.page_mm) / scale_of(scene.user_to_page)
     filled: list[tuple[BaseGeometry, int]] = []
     for index, shape in enumerate(shapes):
         if shape.fill is None:
@@ -44,7 +43,7 @@ def areas(scene: Scene, reading: ReadingOptions, svg_to_arm: FloatArray) -> Iter
     if not filled:
         return
     tree = shapely.STRtree([one for one, _ in filled])
-    page = _page(scene)
+    page = _moved(shapely.box(0.0, 0.0, *scene.page_mm), inverse(scene.user_to_page))
     for number, (seen, index) in enumerate(filled):
         above = [
             later
@@ -55,12 +54,11 @@ def areas(scene: Scene, reading: ReadingOptions, svg_to_arm: FloatArray) -> Iter
             seen = seen.difference(shapely.union_all([filled[later][0] for later in above]))
         if reading.crop == "page":
             seen = seen.intersection(page)
-        placed = affine_transform(seen, [*svg_to_arm[:, :2].ravel(), *svg_to_arm[:, 2]])
+        placed = _moved(seen, svg_to_arm)
         paint = shapes[index].fill
         if placed.area > _LEAST_MM2 and paint is not None:
             yield Area(placed, shapes[index].layer, paint.colour)
 
 
-def _page(scene: Scene) -> BaseGeometry:
-    back = np.linalg.inv(np.vstack((scene.user_to_page, (0.0, 0.0, 1.0))))[:2]
-    return affine_transform(shapely.box(0.0, 0.0, *scene.page_mm), [*back[:, :2].ravel(), *back[:, 2]])
+def _moved(shape: BaseGeometry, affine: FloatArray) -> BaseGeometry:
+    return affine_transform(shape, [*affine[:, :2].ravel(), *affine[:, 2]])

@@ -12,6 +12,7 @@ from planner.errors import PlanError
 MOST_RINGS = 100_000
 _QUARTER = 16
 """Chords of a rounded corner."""
+_GRAZE_MM = 1e-6
 _SMOOTH = 0.02
 """Of the spacing: what points of a ring may be dropped for."""
 
@@ -37,13 +38,15 @@ def contours(area: BaseGeometry, spacing_mm: float) -> list[list[FloatArray]]:
 
 def spirals(levels: list[list[FloatArray]], area: BaseGeometry, spacing_mm: float) -> list[FloatArray]:
     """The same rings as few lines: each leads on to the nearest of the next level where the way there stays inside."""
+    inside = area.buffer(_GRAZE_MM)  # ends lie on the edge, but for rounding
+    shapely.prepare(inside)
     left = [list(rings) for rings in levels]
     lines = []
     for level, rings in enumerate(left):
         for ring in rings:
             line = [ring]
             for deeper in left[level + 1 :]:
-                found = _nearest(line[-1][-1], deeper, area, spacing_mm)
+                found = _nearest(line[-1][-1], deeper, inside, spacing_mm)
                 if found is None:
                     break
                 index, at = found
@@ -54,7 +57,7 @@ def spirals(levels: list[list[FloatArray]], area: BaseGeometry, spacing_mm: floa
 
 
 def _nearest(
-    place: FloatArray, rings: list[FloatArray], area: BaseGeometry, spacing_mm: float
+    place: FloatArray, rings: list[FloatArray], inside: BaseGeometry, spacing_mm: float
 ) -> tuple[int, int] | None:
     """Which ring, and where on it, the line is led to; None where none is near enough inside."""
     best = None
@@ -66,4 +69,4 @@ def _nearest(
     if best is None:
         return None
     _, index, at = best
-    return (index, at) if area.buffer(1e-6).covers(shapely.LineString((place, rings[index][at]))) else None
+    return (index, at) if inside.covers(shapely.LineString((place, rings[index][at]))) else None

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from planner.affine import scale_of
 from planner.arrays import FloatArray, frozen
 from planner.drawing.drawing import Drawing, Outline
 from planner.drawing.fill.areas import areas
@@ -33,7 +34,8 @@ def with_fills(drawing: Drawing, options: FillOptions, svg_to_arm: FloatArray) -
     lines = fill_lines(drawing, options, svg_to_arm)
     if not lines:
         return drawing
-    thin = [outline for outline in drawing.outlines if not is_wide(outline, options, svg_to_arm)]
+    mm_per_unit = scale_of(svg_to_arm)
+    thin = [outline for outline in drawing.outlines if not is_wide(outline, options, mm_per_unit)]
     return replace(drawing, outlines=(*thin, *lines))
 
 
@@ -53,9 +55,10 @@ def fill_lines(drawing: Drawing, options: FillOptions, svg_to_arm: FloatArray) -
             inner = area.shape.buffer(-options.from_edge_mm) if options.from_edge_mm else area.shape
             lines = _lines(inner, options.kind, np.radians(options.angle_deg + turned), spacing_mm)
             found += [_outline(line, svg_to_arm, back, area.layer, area.colour) for line in lines]
+    mm_per_unit = scale_of(svg_to_arm)
     for outline in drawing.outlines:
-        if is_wide(outline, options, svg_to_arm):
-            lines = _passes(outline, options, svg_to_arm)
+        if is_wide(outline, options, mm_per_unit):
+            lines = _passes(outline, outline.width * mm_per_unit, options, svg_to_arm)
             found += [_outline(line, svg_to_arm, back, outline.layer, outline.colour) for line in lines]
     return found
 
@@ -98,18 +101,16 @@ def _lightness(colour: tuple[int, int, int]) -> float:
     return float(np.dot(linear, (0.2126, 0.7152, 0.0722)))
 
 
-def is_wide(outline: Outline, options: FillOptions, svg_to_arm: FloatArray) -> bool:
+def is_wide(outline: Outline, options: FillOptions, mm_per_unit: float) -> bool:
     """Whether it is drawn as an area instead of along its middle."""
-    scale = float(np.sqrt(abs(np.linalg.det(svg_to_arm[:, :2]))))
     is_asked = options.wide_strokes is WideStrokes.PASSES
-    return is_asked and outline.width * scale > _WIDER * options.spacing_mm
+    return is_asked and outline.width * mm_per_unit > _WIDER * options.spacing_mm
 
 
-def _passes(outline: Outline, options: FillOptions, svg_to_arm: FloatArray) -> list[FloatArray]:
+def _passes(outline: Outline, width_mm: float, options: FillOptions, svg_to_arm: FloatArray) -> list[FloatArray]:
     """Rings within a wide stroke, evenly spaced between its edge and its middle, and the middle."""
     (line,) = flatten_all([outline], svg_to_arm, _CHORD_MM)
-    scale = float(np.sqrt(abs(np.linalg.det(svg_to_arm[:, :2]))))
-    half_mm = (outline.width * scale - options.spacing_mm) / 2
+    half_mm = (width_mm - options.spacing_mm) / 2
     n_rings = int(np.ceil(half_mm / options.spacing_mm))
     middle = shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0])
     rings: list[FloatArray] = []

@@ -54,6 +54,17 @@ class Shape:
     clips: tuple[BaseGeometry, ...]
     layer: str
 
+    @property
+    def colour(self) -> Colour:
+        """Of its lines: that of the stroke, or else of the fill."""
+        paint = self.stroke.paint if self.stroke is not None else self.fill
+        return (0, 0, 0) if paint is None else paint.colour
+
+    @property
+    def width(self) -> float:
+        """Of its stroke, 0 where its lines are the edge of its fill."""
+        return 0.0 if self.stroke is None else self.stroke.width
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Scene:
