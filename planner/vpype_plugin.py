@@ -30,7 +30,8 @@ def arm(document: vp.Document, output: str, arm: str | None, options: tuple[str,
 
         vpype read drawing.svg linemerge linesort arm --arm so101 -x margin=1cm traj.csv
     """
-    from planner.cli.plan import plan_parser, settings_of
+    from planner.cli.plan import plan_parser
+    from planner.cli.plan_options import settings_of
     from planner.drawing.source import SvgInMemory
     from planner.errors import PlannerError
     from planner.pipeline import plan

@@ -18,7 +18,8 @@ import numpy as np
 import pytest
 
 from planner.cli import EXIT_DEFECT, main
-from planner.cli.plan import plan_parser, settings_of
+from planner.cli.plan import plan_parser
+from planner.cli.plan_options import settings_of
 from planner.cli.terminal import progress
 from planner.counted import counted
 from planner.drawing.fill_options import FillBy, FillKind, FillOptions, WideStrokes

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from planner.cli.files import output_file
 from planner.cli.interrupts import interrupts_remembered
 from planner.cli.parser import Parser
-from planner.cli.plan import add_plan_options, preferred, settings_of
+from planner.cli.plan_options import add_plan_options, preferred, settings_of
 from planner.cli.terminal import print_lines, print_note, print_warnings, progress
 from planner.counted import counted
 from planner.summary import clock

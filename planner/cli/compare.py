@@ -14,7 +14,7 @@ from planner.cli.interrupts import interrupts_remembered
 from planner.cli.joints import all_joints
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
-from planner.cli.plan import add_arm_and_placement_options, settings_of
+from planner.cli.plan_options import add_arm_and_placement_options, settings_of
 from planner.cli.quantities import angle_deg, coordinate_mm
 from planner.cli.terminal import print_summary, print_warnings, progress
 from planner.errors import UsageError
