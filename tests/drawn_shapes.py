@@ -24,11 +24,13 @@ class Shape:
 
 
 def svg_of(shapes: list[Shape], attributes: str = 'viewBox="0 0 100 100"') -> str:
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" {attributes} fill="none" stroke="black" stroke-linecap="round">'
-        + "".join(shape.element for shape in shapes)
-        + "</svg>"
-    )
+    return lines_svg("".join(shape.element for shape in shapes), attributes)
+
+
+def lines_svg(body: str, attributes: str) -> str:
+    """An SVG of lines: nothing in it is filled, and lines of no length are dots."""
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" {attributes} fill="none" stroke="black" stroke-linecap="round">'
+    return f"{head}{body}</svg>"
 
 
 def polyline(*vertices: tuple[float, float]) -> Shape:

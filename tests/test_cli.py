@@ -31,6 +31,7 @@ from planner.pens import GroupBy, Pen
 from planner.settings import Anchor, CanvasKind, ConfigurationWeights, Method, PlaceKind, PlanSettings
 from planner.summary import PhaseTimes, PlanSummary
 from planner.trajectory import Trajectory, read_trajectory, write_trajectory
+from tests.drawn_shapes import lines_svg
 
 ROOT = Path(__file__).resolve().parent.parent
 HEAVY = ("casadi", "loky", "matplotlib", "numpy", "pydantic", "rich", "ruckig", "scipy", "shapely", "tinycss2")
@@ -73,9 +74,7 @@ def drawing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A drawing in the current folder."""
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "arc.svg"
-    path.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 40 30"><path d="M2 2 20 25 38 4"/></svg>'
-    )
+    path.write_text(lines_svg('<path d="M2 2 20 25 38 4"/>', 'viewBox="0 0 40 30"'))
     return path
 
 

@@ -10,8 +10,9 @@ import pytest
 
 from planner.arms.arm_file import arms_folder
 from planner.cli import main
+from tests.drawn_shapes import lines_svg
 
-SVG = '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 40 30"><path d="M2 2 20 25 38 4"/></svg>'
+SVG = lines_svg('<path d="M2 2 20 25 38 4"/>', 'viewBox="0 0 40 30"')
 
 
 @pytest.fixture

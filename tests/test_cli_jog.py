@@ -29,6 +29,7 @@ from planner.arms.arm_file import arm_file_text, load_arm
 from planner.cli import main
 from planner.cli.jog_keyboard import Keyboard, Keys
 from planner.errors import UsageError
+from tests.drawn_shapes import lines_svg
 from tests.hardware.controllers.bus import DynamixelModel, FeetechModel
 from tests.hardware.controllers.lines import Model, pty_line
 from tests.hardware.controllers.maestro import MaestroModel
@@ -271,9 +272,7 @@ def test_a_port_is_jogged_or_played_by_one_process_at_a_time(
     tmp_path: Path, script: Callable[[str], str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     csv = tmp_path / "traj.csv"
-    (tmp_path / "drawing.svg").write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 9 9"><path d="M2 2h5"/></svg>'
-    )
+    (tmp_path / "drawing.svg").write_text(lines_svg('<path d="M2 2h5"/>', 'viewBox="0 0 9 9"'))
     assert main([str(tmp_path / "drawing.svg"), "-o", str(csv), "--quiet"]) == 0
     with pty_line(Ssc32Model()) as far:
         here = ["--driver", "ssc32", "--port", far.name]

@@ -12,8 +12,9 @@ import pytest
 from planner.arms.arm_file import load_arm
 from planner.cli import main
 from planner.trajectory import Trajectory, write_trajectory
+from tests.drawn_shapes import lines_svg
 
-DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 60 40"><path d="M0 0 H60 V40"/></svg>'
+DRAWING = lines_svg('<path d="M0 0 H60 V40"/>', 'viewBox="0 0 60 40"')
 
 
 @pytest.fixture

@@ -23,6 +23,7 @@ from planner.cli import main
 from planner.drawing.flatten import flatten_all
 from planner.drawing.svg import read_drawing
 from planner.trajectory import read_trajectory
+from tests.drawn_shapes import lines_svg
 from tests.hardware.controllers.lines import pty_line
 from tests.hardware.controllers.maestro import MaestroModel
 from tests.hardware.controllers.ssc32 import Ssc32Model
@@ -33,9 +34,7 @@ RUN = [sys.executable, "-m", "planner.cli", "run"]
 
 def _planned(folder: Path, shapes: str) -> Path:
     drawing, target = folder / "drawing.svg", folder / "traj.csv"
-    drawing.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 160 60">{shapes}</svg>'
-    )
+    drawing.write_text(lines_svg(f"{shapes}", 'viewBox="0 0 160 60"'))
     assert main([str(drawing), "-o", str(target), "--quiet"]) == 0
     drawing.unlink()
     return target
@@ -359,9 +358,7 @@ def test_every_arm_can_be_rehearsed_with_real_servos(
     arm: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     drawing, csv = tmp_path / "drawing.svg", tmp_path / "traj.csv"
-    drawing.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 40 20"><path d="M5 5h9"/></svg>'
-    )
+    drawing.write_text(lines_svg('<path d="M5 5h9"/>', 'viewBox="0 0 40 20"'))
     assert main([str(drawing), "-o", str(csv), "--quiet", "--arm", arm]) == 0
     picture = ["--picture", str(tmp_path / "drawn.svg")]
     assert main(["run", str(csv), "--fast", "--servos", "real", *picture]) == 0

@@ -18,6 +18,7 @@ import pytest
 from hardware.playback.claims import Claimed, claim, claim_of_journal, claim_of_port
 from hardware.playback.journal import journal_path
 from planner.cli import main
+from tests.drawn_shapes import lines_svg
 from tests.hardware.controllers.lines import pty_line
 from tests.hardware.controllers.ssc32 import Ssc32Model
 
@@ -33,9 +34,7 @@ def planned(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("planned")
     drawing, target = folder / "drawing.svg", folder / "traj.csv"
     taps = "".join(f'<path d="M{x} {x % 3}h0"/>' for x in range(0, 160, 16))
-    drawing.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 160 60">{taps}</svg>'
-    )
+    drawing.write_text(lines_svg(f"{taps}", 'viewBox="0 0 160 60"'))
     assert main([str(drawing), "-o", str(target), "--quiet"]) == 0
     return target
 

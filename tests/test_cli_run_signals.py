@@ -15,6 +15,7 @@ import pytest
 from hardware.playback.journal import digest, journal_path
 from hardware.playback.journal_entry import read_journal
 from planner.cli import main
+from tests.drawn_shapes import lines_svg
 from tests.hardware.controllers.ssc32 import Ssc32Model
 from tests.test_cli_run import ROOT, RUN, _Terminal
 
@@ -26,9 +27,7 @@ def planned(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A large circle drawn in one stroke of several seconds."""
     folder = tmp_path_factory.mktemp("planned")
     drawing, target = folder / "drawing.svg", folder / "traj.csv"
-    drawing.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 160 60"><circle cx="80" cy="30" r="29"/></svg>'
-    )
+    drawing.write_text(lines_svg('<circle cx="80" cy="30" r="29"/>', 'viewBox="0 0 160 60"'))
     assert main([str(drawing), "-o", str(target), "--quiet"]) == 0
     return target
 

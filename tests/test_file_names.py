@@ -14,8 +14,9 @@ import pytest
 
 from planner.cli import main
 from planner.trajectory import read_trajectory
+from tests.drawn_shapes import lines_svg
 
-DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 40 30"><path d="M2 2 20 25 38 4"/></svg>'
+DRAWING = lines_svg('<path d="M2 2 20 25 38 4"/>', 'viewBox="0 0 40 30"')
 LONG = "a" * 300
 
 

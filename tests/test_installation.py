@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 import planner
+from tests.drawn_shapes import lines_svg
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("planner", "hardware", "drawing_arm_planner")
@@ -33,7 +34,7 @@ sys.meta_path[sys.meta_path.index(PathFinder)] = Alone
 """
 """The environment that runs the tests has the packages too: they are looked for in the folders of the test alone."""
 START = f"{ALONE}\nfrom drawing_arm_planner.command import main\nsys.exit(main())"
-SVG = '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 9 9"><path d="M2 2 5 4"/></svg>'
+SVG = lines_svg('<path d="M2 2 5 4"/>', 'viewBox="0 0 9 9"')
 
 
 @pytest.fixture(scope="module")

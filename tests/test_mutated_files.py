@@ -8,6 +8,8 @@ from types import ModuleType
 
 import pytest
 
+from tests.drawn_shapes import lines_svg
+
 SOAK = Path(__file__).parents[1] / "benchmarks" / "soak"
 DRAWINGS = (
     '<rect x="5" y="5" width="9" height="6" rx="2"/><circle cx="20" cy="9" r="4"/>',
@@ -28,9 +30,7 @@ def soak(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> ModuleType:
 def test_mutated_drawings(soak: ModuleType, tmp_path: Path) -> None:
     drawings = importlib.import_module("drawings")
     for index, body in enumerate(DRAWINGS):
-        (tmp_path / f"{index}.svg").write_text(
-            f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 30 20">{body}</svg>'
-        )
+        (tmp_path / f"{index}.svg").write_text(lines_svg(f"{body}", 'viewBox="0 0 30 20"'))
     kinds = [drawings.attempt((tmp_path,), 7, item, tmp_path / "desk") for item in range(-1, 30)]
     assert [kind for kind in kinds if not kind[0].startswith("fine")] == []
     assert len(set(kinds)) > 2  # some are drawn, some are refused

@@ -20,6 +20,7 @@ from planner.travel.branch_change import plan_branch_change
 from planner.travel.travel_moves import TravelRules
 from planner.workspace.canvas import canvas_of
 from tests.arms.chains import kinematics_of, load_once, model_of
+from tests.drawn_shapes import lines_svg
 
 OFF_THE_DRAWING = "off the drawing by more than the tolerance, however slow; try a larger --tolerance: "
 STRAYING = "the lifted pen strays by more than the tolerance, however slow; try a larger --tolerance: "
@@ -36,9 +37,7 @@ def dashes(count: int) -> str:
 
 def warnings_of(folder: Path, paths: str, rate_hz: float = 100.0, tolerance_mm: float = 0.05) -> list[str]:
     drawing = folder / "drawing.svg"
-    drawing.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" width="100mm" height="60mm" viewBox="0 0 100 60">{paths}</svg>'
-    )
+    drawing.write_text(lines_svg(f"{paths}", 'width="100mm" height="60mm" viewBox="0 0 100 60"'))
     return plan(
         drawing,
         PlanSettings(

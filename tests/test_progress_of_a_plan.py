@@ -8,13 +8,12 @@ from pathlib import Path
 from planner.pipeline import plan
 from planner.progress import STAGES, of_all_stages
 from planner.settings import PlanSettings
+from tests.drawn_shapes import lines_svg
 
 
 def test_the_bar_goes_through_all_stages_and_never_back(tmp_path: Path) -> None:
     drawing = tmp_path / "drawing.svg"
-    drawing.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 9 9"><path d="M2 2 5 4M7 7l1 0"/></svg>'
-    )
+    drawing.write_text(lines_svg('<path d="M2 2 5 4M7 7l1 0"/>', 'viewBox="0 0 9 9"'))
     told: list[tuple[str, int, int]] = []
     plan(drawing, PlanSettings(), lambda *now: told.append(now))
     stages = list(dict.fromkeys(stage for stage, _, _ in told))

@@ -14,6 +14,7 @@ from planner.kinematics.limits import within_limits
 from planner.trajectory import TRAVELLING, read_trajectory
 from planner.workspace.canvas import usable_canvas
 from tests.arms.chains import model_of
+from tests.drawn_shapes import lines_svg
 
 LIMITS = {"q1": (-270.0, 90.0), "q2": (40.0, 178.0), "q3": (-150.0, 60.0), "q5": (-300.0, 60.0)}
 TRIANGLE = '<g fill="none" stroke="black"><path d="M5 5 L110 85 L215 5 Z"/><path d="M110 5 V85"/></g>'
@@ -47,7 +48,7 @@ def arm(arm_file: Path) -> Arm:
 def drawing(tmp_path: Path) -> Path:
     file = tmp_path / "triangle.svg"
     file.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 220 90">{TRIANGLE}</svg>',
+        lines_svg(f"{TRIANGLE}", 'viewBox="0 0 220 90"'),
         encoding="utf-8",
     )
     return file

@@ -13,12 +13,17 @@ import random
 import re
 import sys
 import tempfile
+from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
 
 from guarded import command, judged, outcomes, told
 from mutations import mutated
 
+Attempt = Callable[[tuple[Path, ...], int, int, Path], tuple[str, str]]
+"""attempt(folders, seed, item, desk): the kind of outcome, and what was said."""
+Write = Callable[[tuple[Path, ...], int, int, Path], None]
+"""write(folders, seed, item, keep): keep the item's file there."""
 EXAMPLES = Path(__file__).parents[2] / "examples"
 _LARGEST_BYTES = 30_000
 _PIECES = tuple(
@@ -110,10 +115,11 @@ def write(folders: tuple[Path, ...], seed: int, item: int, keep: Path) -> None:
     (keep / f"{seed}_{item}.svg").write_bytes(drawing(folders, seed, item))
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def soak(attempt: Attempt, write: Write, description: str, count: int) -> int:
+    """Try as many files, made of the SVGs of the folders that the command line names; the exit code."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="*", type=Path, default=[EXAMPLES])
-    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--count", type=int, default=count)
     parser.add_argument("--from", dest="begin", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", type=Path, default=Path("faults"))
@@ -127,4 +133,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(soak(attempt, write, __doc__ or "", 1000))

@@ -9,16 +9,13 @@ files are kept.
 
 from __future__ import annotations
 
-import argparse
 import random
 import sys
-import tempfile
-from functools import partial
 from pathlib import Path
 
 from bombs import bomb
-from drawings import EXAMPLES, drawing
-from guarded import command, judged, outcomes, told
+from drawings import drawing, soak
+from guarded import command, judged
 
 _BOMBS = 0.2
 
@@ -41,21 +38,5 @@ def write(folders: tuple[Path, ...], seed: int, item: int, keep: Path) -> None:
     (keep / f"hostile_{seed}_{item}.svg").write_bytes(hostile(folders, seed, item))
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folders", nargs="*", type=Path, default=[EXAMPLES])
-    parser.add_argument("--count", type=int, default=10_000)
-    parser.add_argument("--from", dest="begin", type=int, default=0)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--keep", type=Path, default=Path("faults"))
-    parser.add_argument("--processes", type=int, default=2)
-    options = parser.parse_args()
-    folders = tuple(folder.resolve() for folder in options.folders)
-    items = range(options.begin, options.begin + options.count)
-    with tempfile.TemporaryDirectory() as desks:
-        found = outcomes(partial(attempt, folders, options.seed), items, Path(desks), options.processes)
-        return told(found, options.keep.resolve(), partial(write, folders, options.seed), options.count)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(soak(attempt, write, __doc__ or "", 10_000))

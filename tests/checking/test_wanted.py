@@ -21,8 +21,9 @@ from planner.drawing.flatten import flatten_all
 from planner.drawing.options import ReadingOptions
 from planner.drawing.outlines import outlines
 from planner.drawing.scene.shape import Paint, Scene, Shape, Stroke
-from planner.drawing.subpath import Subpath, polyline
+from planner.drawing.subpath import polyline
 from planner.placement.short_gaps import gaps_to_draw
+from tests.drawing.cut.made_subpaths import subpaths_of
 
 CHORD_MM = 0.002
 INK, GLASS = Paint((0, 0, 0), True), Paint((0, 0, 0), False)
@@ -33,23 +34,9 @@ point = st.tuples(coordinate, coordinate)
 
 
 @st.composite
-def subpaths(draw: st.DrawFn) -> Subpath:
-    start = first = draw(point)
-    curves = []
-    for _ in range(draw(st.integers(1, 4))):
-        end = draw(point)
-        curves.append([start, draw(point), draw(point), end] if draw(st.booleans()) else [start, start, end, end])
-        start = end
-    if draw(st.booleans()):
-        curves.append([start, start, first, first])
-        return Subpath(np.array(curves), True, np.ones(len(curves), dtype=np.bool_))
-    return Subpath(np.array(curves), False, np.ones(len(curves), dtype=np.bool_))
-
-
-@st.composite
 def shapes(draw: st.DrawFn) -> Shape:
-    path = draw(subpaths())
-    clips = tuple(region([draw(subpaths())], draw(st.booleans())) for _ in range(draw(st.integers(0, 2))))
+    path = draw(subpaths_of(point))
+    clips = tuple(region([draw(subpaths_of(point))], draw(st.booleans())) for _ in range(draw(st.integers(0, 2))))
     if draw(st.booleans()):
         closed = polyline(np.concatenate((path.beziers[:, 0], path.beziers[-1:, 3])), is_closed=True)
         return Shape((closed,), (closed,), draw(st.sampled_from([INK, GLASS])), draw(st.booleans()), None, clips, "")

@@ -14,7 +14,7 @@ from planner.pipeline import placed_strokes, plan
 from planner.settings import Method, PlanSettings
 from tests.arms.chains import load_once, model_of
 
-SVG = """<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 40 20">
+SVG = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20">
 <g fill="none" stroke="black" stroke-linecap="round"><path d="M4 4 12 16 20 4M24 4q6 14 12 0"/>
 <circle cx="12" cy="5" r="3"/><path d="M30 16h0"/></g></svg>"""
 

@@ -15,11 +15,13 @@ from planner.pipeline import plan
 from planner.settings import PlanSettings
 from planner.timing import interior_point, newton_system, path_timing
 from planner.timing.path_timing import minimum_time
+from tests.drawn_shapes import lines_svg
 from tests.timing.rig import LIMITS, LINES, joint_curve, polar_paths, problem_of, rate_curve, rates_by_formula
 from tests.timing.test_path_timing import FINE_HZ, lines_made, steady_s
 
-TWO_LINES = """<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" width="100mm" height="60mm" viewBox="0 0 100 60">
-<path d="M10 10 L60 12 L80 50"/><path d="M20 40 L40 55"/></svg>"""
+TWO_LINES = lines_svg(
+    """<path d="M10 10 L60 12 L80 50"/><path d="M20 40 L40 55"/>""", 'width="100mm" height="60mm" viewBox="0 0 100 60"'
+)
 
 
 @settings(deadline=None, max_examples=12)

@@ -15,24 +15,11 @@ from planner.arrays import FloatArray
 from planner.drawing.cut.cut import Cutter, cut
 from planner.drawing.cut.region import region
 from planner.drawing.subpath import Subpath, polyline
+from tests.drawing.cut.made_subpaths import subpaths_of
 
 BOX = shapely.box(0.0, 0.0, 10.0, 10.0)
 coordinate = st.floats(-15.0, 25.0).map(lambda value: round(value, 2))
 point = st.tuples(coordinate, coordinate)
-
-
-@st.composite
-def subpaths(draw: st.DrawFn) -> Subpath:
-    start = first = draw(point)
-    curves = []
-    for _ in range(draw(st.integers(1, 4))):
-        end = draw(point)
-        curves.append([start, draw(point), draw(point), end] if draw(st.booleans()) else [start, start, end, end])
-        start = end
-    is_closed = draw(st.booleans())
-    if is_closed and start != first:
-        curves.append([start, start, first, first])
-    return Subpath(np.array(curves), is_closed, np.ones(len(curves), dtype=np.bool_))
 
 
 @st.composite
@@ -66,7 +53,7 @@ def is_covered(area: BaseGeometry, points: FloatArray) -> FloatArray:
 
 
 @settings(max_examples=120, deadline=None)
-@given(st.lists(subpaths(), min_size=1, max_size=3), regions())
+@given(st.lists(subpaths_of(point), min_size=1, max_size=3), regions())
 def test_the_parts_inside_and_outside_make_the_whole(paths: list[Subpath], area: BaseGeometry) -> None:
     cutter = Cutter(area)
     for path, inside, outside in zip(paths, cutter.inside(paths), cutter.outside(paths), strict=True):
@@ -79,7 +66,7 @@ def test_the_parts_inside_and_outside_make_the_whole(paths: list[Subpath], area:
 
 
 @settings(max_examples=120, deadline=None)
-@given(subpaths(), regions())
+@given(subpaths_of(point), regions())
 def test_ends_lie_on_the_edge_and_on_the_path(path: Subpath, area: BaseGeometry) -> None:
     for part in cut(path, area):
         assert np.array_equal(part.beziers[1:, 0], part.beziers[:-1, 3])

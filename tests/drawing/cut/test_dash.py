@@ -11,6 +11,7 @@ from planner.arrays import FloatArray
 from planner.drawing.cut.arc_length import ArcLength
 from planner.drawing.cut.dash import MOST_DASHES, dashed
 from planner.drawing.subpath import Subpath, polyline
+from tests.drawing.cut.made_subpaths import subpaths_of
 
 LINE = polyline(np.array([[0.0, 0.0], [20.0, 0.0]]))
 SQUARE = polyline(np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]), is_closed=True)
@@ -18,20 +19,6 @@ CUSP = Subpath(np.array([[[0.0, 0.0], [10.0, 10.0], [0.0, 10.0], [10.0, 0.0]]]),
 
 coordinate = st.floats(-50.0, 50.0).map(lambda value: round(value, 2))
 point = st.tuples(coordinate, coordinate)
-
-
-@st.composite
-def subpaths(draw: st.DrawFn) -> Subpath:
-    start = first = draw(point)
-    curves = []
-    for _ in range(draw(st.integers(1, 4))):
-        end = draw(point)
-        curves.append([start, draw(point), draw(point), end] if draw(st.booleans()) else [start, start, end, end])
-        start = end
-    is_closed = draw(st.booleans())
-    if is_closed and start != first:
-        curves.append([start, start, first, first])
-    return Subpath(np.array(curves), is_closed, np.ones(len(curves), dtype=np.bool_))
 
 
 def dense_length(beziers: FloatArray) -> float:
@@ -53,13 +40,13 @@ def ends(dashes: list[Subpath]) -> list[tuple[float, float]]:
 
 
 @settings(max_examples=60, deadline=None)
-@given(subpaths())
+@given(subpaths_of(point))
 def test_arc_lengths_are_those_of_many_chords(path: Subpath) -> None:
     assert ArcLength.of(path.beziers).total == pytest.approx(dense_length(path.beziers), rel=1e-6, abs=1e-9)
 
 
 @settings(max_examples=50, deadline=None)
-@given(subpaths(), st.lists(st.floats(0.5, 30.0), min_size=1, max_size=4), st.floats(-40.0, 40.0))
+@given(subpaths_of(point), st.lists(st.floats(0.5, 30.0), min_size=1, max_size=4), st.floats(-40.0, 40.0))
 def test_dashes_and_gaps_have_their_lengths(path: Subpath, array: list[float], offset: float) -> None:
     total = ArcLength.of(path.beziers).total
     pattern = array if len(array) % 2 == 0 else [*array, *array]

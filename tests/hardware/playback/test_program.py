@@ -19,10 +19,10 @@ from planner.errors import UsageError
 from planner.pipeline import plan
 from planner.settings import PlanSettings
 from planner.trajectory import TRAVELLING, Trajectory
+from tests.drawn_shapes import lines_svg
 
-DRAWING = (
-    '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 60 30"><path d="M5 5 15 25 25 5"/>'
-    '<path d="M30 15h0"/><circle cx="45" cy="15" r="8"/></svg>'
+DRAWING = lines_svg(
+    '<path d="M5 5 15 25 25 5"/><path d="M30 15h0"/><circle cx="45" cy="15" r="8"/>', 'viewBox="0 0 60 30"'
 )
 
 

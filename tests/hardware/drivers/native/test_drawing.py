@@ -24,6 +24,7 @@ from planner.checking.drawing_error import DrawingErrors, drawing_error
 from planner.pipeline import plan
 from planner.settings import PlanSettings
 from planner.trajectory import Trajectory
+from tests.drawn_shapes import lines_svg
 from tests.hardware.emulator.emulator import Emulator, Faults, LockStep
 from tests.hardware.observed import Observed
 
@@ -35,8 +36,9 @@ _EVERY_S = 0.005
 def drawing(tmp_path_factory: pytest.TempPathFactory) -> Path:
     target = tmp_path_factory.mktemp("drawing") / "drawing.svg"
     target.write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 60 30"><path d="M5 5 15 25 25 5"/>'
-        '<path d="M30 15h0"/><circle cx="45" cy="15" r="8"/></svg>'
+        lines_svg(
+            '<path d="M5 5 15 25 25 5"/><path d="M30 15h0"/><circle cx="45" cy="15" r="8"/>', 'viewBox="0 0 60 30"'
+        )
     )
     return target
 

@@ -22,15 +22,18 @@ from planner.cli import main
 from planner.drawing.flatten import flatten_all
 from planner.drawing.svg import read_drawing
 from planner.trajectory import read_trajectory
+from tests.drawn_shapes import lines_svg
 from tests.hardware.drivers.native.paper import ink
 from tests.hardware.emulator.emulator import Emulator
 from tests.hardware.real_time import in_real_time
 
 _ARM = load_arm("drawing_arm")
 _STROKES = 5
-_DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 90 30">
-<path d="M2 20 C 10 0 20 30 30 12"/><path d="M42 6h0"/><circle cx="42" cy="20" r="8"/>
-<path d="M58 28 L70 4 L82 28"/><path d="M64 20h12"/></svg>"""
+_DRAWING = lines_svg(
+    """<path d="M2 20 C 10 0 20 30 30 12"/><path d="M42 6h0"/><circle cx="42" cy="20" r="8"/>
+<path d="M58 28 L70 4 L82 28"/><path d="M64 20h12"/>""",
+    'viewBox="0 0 90 30"',
+)
 _WORST_MM = 0.15
 """A pulse is right to half a step of 0.5 us: 0.025 degrees of each of the joints, which can add up to this."""
 _MEETING_MM = 5.0

@@ -19,6 +19,7 @@ from planner.arms.arm_file import load_arm
 from planner.arms.arm_text import arm_toml
 from planner.cli import main
 from planner.trajectory import read_trajectory
+from tests.drawn_shapes import lines_svg
 from tests.hardware.controllers.bench import Bench
 from tests.hardware.controllers.lines import Model
 from tests.hardware.controllers.maestro import MaestroModel
@@ -34,9 +35,7 @@ def planned(tmp_path: Path) -> Planned:
 
     def plan(arm: str) -> Path:
         drawing, csv = tmp_path / "drawing.svg", tmp_path / "traj.csv"
-        drawing.write_text(
-            '<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 60 60"><path d="M0 0h0M20 8h0M40 0 l12 5"/></svg>'
-        )
+        drawing.write_text(lines_svg('<path d="M0 0h0M20 8h0M40 0 l12 5"/>', 'viewBox="0 0 60 60"'))
         assert main([str(drawing), "-o", str(csv), "--arm", arm, "--no-fit", "--quiet"]) == 0
         return csv
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from planner.cli import main
+from tests.drawn_shapes import lines_svg
 from tests.hardware.drivers.streaming.soak import Soak
 
 
@@ -17,9 +18,7 @@ def test_whatever_dies_or_is_reset_the_drawing_gets_done(
 ) -> None:
     drawing, csv = tmp_path / "drawing.svg", tmp_path / "traj.csv"
     strokes = "".join(f"M{x} 5v8" for x in range(5, 25, 2)) + "M5 20h0M15 20h0"
-    drawing.write_text(
-        f'<svg xmlns="http://www.w3.org/2000/svg" fill="none" stroke="red" stroke-linecap="round" viewBox="0 0 90 30"><path d="{strokes}"/></svg>'
-    )
+    drawing.write_text(lines_svg(f'<path d="{strokes}"/>', 'viewBox="0 0 90 30"'))
     assert main([str(drawing), "-o", str(csv), "--quiet"]) == 0
     soak = Soak(csv, driver)
     interruptions = 0
