@@ -12,12 +12,11 @@ from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
 from planner.plots.look import USUAL, Look
 from planner.plots.paper import paper_panel, pieces
-from planner.plots.samples import joined_while_drawing
+from planner.plots.samples import TAP_EXTENT_MM, joined_while_drawing
 from planner.plots.sheet import Sheet
 from planner.trajectory import Trajectory
 
 _FLATTEN_TOLERANCE_MM = 0.02  # well under a pixel
-_TAP_EXTENT_MM = 0.02  # a stroke that stays within this is a dot
 
 
 def plot_drawing(
@@ -65,7 +64,7 @@ def _taps(trajectory: Trajectory, xy: FloatArray) -> FloatArray:
     is_first = np.concatenate(([True], ~joined_while_drawing(trajectory)[down[1:] - 1]))
     starts = np.flatnonzero(is_first)
     spread = np.maximum.reduceat(xy[down], starts) - np.minimum.reduceat(xy[down], starts)
-    taps: FloatArray = xy[down[starts[spread.max(axis=1) <= _TAP_EXTENT_MM]]]
+    taps: FloatArray = xy[down[starts[spread.max(axis=1) <= TAP_EXTENT_MM]]]
     return taps
 
 

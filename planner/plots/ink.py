@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.collections import LineCollection
+from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
@@ -14,7 +14,7 @@ from planner.counted import counted
 from planner.pens import hex_of
 from planner.plots.look import USUAL, Look
 from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, round_step
-from planner.plots.samples import joined_while_drawing
+from planner.plots.samples import TAP_EXTENT_MM, joined_while_drawing
 from planner.plots.sheet import Sheet
 from planner.trajectory import TRAVELLING, Trajectory
 
@@ -57,9 +57,13 @@ def plot_sheet(trajectory: Trajectory, tip_mm: FloatArray, look: Look = USUAL) -
         places = np.column_stack((across, up))
         legend = []
         for name, colour, pen_mm, drawn in _pens(trajectory):
-            for line in _lines(trajectory, places, drawn):
-                line.set(color=colour, linewidth=pen_mm * pt_per_mm, capstyle="round", zorder=2)
-                axes.add_collection(line)
+            lines, taps = _lines_and_taps(trajectory, places, drawn)
+            ink = LineCollection(lines, color=colour, linewidth=pen_mm * pt_per_mm, capstyle="round", zorder=2)
+            axes.add_collection(ink)
+            sizes = np.full(len(taps), pen_mm)
+            dots = EllipseCollection(sizes, sizes, 0.0, units="xy", offsets=taps, offset_transform=axes.transData)
+            dots.set(facecolor=colour, edgecolor="none", zorder=2)
+            axes.add_collection(dots)
             if name:
                 legend.append(Line2D([], [], color=colour, linewidth=3.0, label=name))
         n_strokes = int(trajectory.stroke.max(initial=-1)) + 1
@@ -92,13 +96,14 @@ def _pens(trajectory: Trajectory) -> list[tuple[str, str, float, IntArray]]:
     ]
 
 
-def _lines(trajectory: Trajectory, places: FloatArray, drawn: IntArray) -> list[LineCollection]:
-    """The strokes of one pen; a tap is a line of no length with round ends."""
+def _lines_and_taps(trajectory: Trajectory, places: FloatArray, drawn: IntArray) -> tuple[list[FloatArray], FloatArray]:
+    """The strokes of one pen: lines (n, 2), and the places (k, 2) where it only touches the paper."""
     stroke = trajectory.stroke
     is_own = (stroke != TRAVELLING) & np.isin(stroke, drawn)
     joined = joined_while_drawing(trajectory)
     begins = np.flatnonzero(is_own & ~np.concatenate(([False], joined)))
     ends = np.flatnonzero(is_own & ~np.concatenate((joined, [False])))
     pieces = [places[begin : end + 1] for begin, end in zip(begins.tolist(), ends.tolist(), strict=True)]
-    pieces = [np.repeat(piece, 2, axis=0) if len(piece) == 1 else piece for piece in pieces]
-    return [LineCollection(pieces)] if pieces else []
+    lines = [piece for piece in pieces if np.ptp(piece, axis=0).max() > TAP_EXTENT_MM]
+    taps = [piece[0] for piece in pieces if np.ptp(piece, axis=0).max() <= TAP_EXTENT_MM]
+    return lines, np.reshape(taps, (-1, 2))

@@ -85,8 +85,9 @@ def _seen(pattern: FloatArray, shift: float, total: float) -> tuple[FloatArray, 
         is_dot, (starts >= -speck) & (starts <= total + speck), (ends > speck) & (starts < total - speck)
     )
     starts, ends = np.maximum(starts[is_seen], 0.0), np.minimum(ends[is_seen], total)
-    starts[starts <= speck] = 0.0
-    ends[ends >= total - speck] = total
+    for borders in (starts, ends):  # both borders of a dot
+        borders[borders <= speck] = 0.0
+        borders[borders >= total - speck] = total
     has_gap = starts[1:] - ends[:-1] > speck
     return np.append(starts[:1], starts[1:][has_gap]), np.append(ends[:-1][has_gap], ends[-1:])
 

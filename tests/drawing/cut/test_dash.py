@@ -136,3 +136,10 @@ def test_lengths_near_a_cusp() -> None:
 def test_a_dot_stays_one() -> None:
     dot = polyline(np.array([[3.0, 4.0]]))
     assert dashed([dot], [1.0, 1.0], 0.5) == [dot]
+
+
+@pytest.mark.parametrize("line", [LINE, polyline(np.array([[4.0, 84.0], [44.0, 84.0]]))])
+def test_dots_at_both_ends_of_a_line_are_dots(line: Subpath) -> None:
+    dots = dashed([line], [0.0, 3.0, 4.0, 3.0], 0.0)[::2]
+    assert all(dot.is_dot for dot in dots)
+    np.testing.assert_array_equal(dots[-1].beziers[0, 0], line.beziers[-1, 3])
