@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import pairwise
 from pathlib import Path
@@ -182,9 +182,9 @@ class Head:
             steps = f"{_shortest(copies.step_x_mm)} {_shortest(copies.step_y_mm)}"
             entries.append(("copies", f"{copies.columns} {copies.rows} {steps}"))
         if self.chosen.layers is not None:
-            entries.append(("layers", json.dumps(self.chosen.layers, ensure_ascii=False)))
+            entries.append(("layers", _list(self.chosen.layers)))
         if self.chosen.by is not None:
-            entries.append((f"only_{self.chosen.by}", json.dumps(self.chosen.kinds, ensure_ascii=False)))
+            entries.append((f"only_{self.chosen.by}", _list(self.chosen.kinds)))
         entries += [(f"pen_{index}", str(pen)) for index, pen in enumerate(self.pens)]
         if self.pen_changes:
             entries.append(("pen_changes", " ".join(map(str, self.pen_changes))))
@@ -208,6 +208,11 @@ class Head:
             if getattr(self.reading, field.name) != field.default
         ]
         return entries
+
+
+def _list(names: Sequence[str]) -> str:
+    """As JSON in which every space counts: lines of the head have single ones, and no others."""
+    return re.sub(" (?= )", r"\\u0020", json.dumps(names))
 
 
 def _pose(paper: PaperPose) -> str:

@@ -10,12 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from planner.cli import main
 from planner.drawing.drawing import Drawing, Outline
 from planner.drawing.layer_name import LayerName
 from planner.drawing.pen_groups import chosen_layers, only, pen_groups
 from planner.errors import UsageError
 from planner.pens import GroupBy, Pen, colour_of, hex_of
 from planner.pens_file import read_pens
+from planner.trajectory import read_trajectory
 
 LINE = np.linspace((0.0, 0.0), (30.0, 0.0), 4)[None]
 channel = st.integers(0, 255)
@@ -143,3 +145,32 @@ def test_a_faulty_file_of_pens_is_refused_with_its_place(tmp_path: Path, text: s
         read_pens(tmp_path / "pens.toml")
     with pytest.raises(UsageError, match="cannot be read"):
         read_pens(tmp_path / "none.toml")
+
+
+SVG = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 60" width="100mm" height="60mm" fill="none"
+ xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" stroke="#00f">
+<g inkscape:groupmode="layer" inkscape:label="a  &#10;b, &quot;c&quot; ✏"><path d="M10 10H40"/></g>
+<g inkscape:groupmode="layer" inkscape:label="2 sea"><path stroke="red" d="M10 40C30 10 60 60 90 30"/></g>
+<g inkscape:groupmode="layer" inkscape:label="%grid"><path d="M0 30H100"/></g></svg>"""
+
+
+def test_pens_draw_one_after_the_other_in_register(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("d.svg").write_text(SVG, encoding="utf-8")
+    assert main(["d.svg", "-o", "all.csv", "--by", "layer", "--quiet"]) == 0
+    whole = read_trajectory(Path("all.csv"))
+    assert [pen.name for pen in whole.pens] == ['a b, "c" ✏', "2 sea"] and len(whole.pen_changes) == 1
+    assert whole.pen_of_stroke.tolist() == [0, 1]
+    assert main(["d.svg", "-o", "by.csv", "--by", "layer", "--split", "--quiet"]) == 0
+    assert main(["d.svg", "-o", "sea.csv", "--layers", "2", "--quiet"]) == 0
+    parts = [read_trajectory(path) for path in sorted(Path().glob("by_*.csv"))]
+    for part in (*parts, read_trajectory(Path("sea.csv"))):
+        assert part.svg_to_arm_mm == whole.svg_to_arm_mm
+    for path in Path().glob("*.csv"):
+        assert main(["check", str(path), "--drawing", "d.svg"]) == 0, path
+    # The arm is at rest, away from the paper, where the pen is changed.
+    change = whole.pen_changes[0]
+    np.testing.assert_array_equal(whole.positions[change - 1], whole.positions[change + 1])
+    assert not whole.pen[change]
+    assert main(["run", "all.csv", "--fast", "--quiet"]) == 0
+    assert main(["run", "all.csv", "--quiet"]) == 2  # nobody is at a terminal to change the pen

@@ -125,7 +125,7 @@ def _of_layers(layers: Mapping[str, Sequence[Outline]], pens: Sequence[Pen]) -> 
             raise UsageError(
                 f"no pen draws layer '{name:.40}'; name it in the layers of one of {known}, or leave it out by --layers"
             )
-        pen = pen or Pen(name or "no layer", outlines[0].colour)
+        pen = pen or Pen(" ".join(name.split()) or "no layer", outlines[0].colour)
         last = groups[-1] if groups else None
         halts = last is None or last.pen != pen or told.halts
         if last is not None and not halts and (last.speed_share, 0.0) == (told.speed_share, told.delay_s):

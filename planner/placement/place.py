@@ -174,7 +174,7 @@ def _turning(size: FloatArray, cell: FloatArray, factor: float, rotate_deg: floa
 def _filling_hint(drawing: Drawing) -> list[str]:
     if drawing.scene is None:
         return []
-    from planner.drawing.fill.fill import n_unfilled
+    from planner.drawing.fill.areas import n_areas
 
-    n_filled = n_unfilled(drawing)
+    n_filled = n_areas(drawing.scene)
     return [f"{counted(n_filled, 'filled shape')} drawn by the edge alone; --fill hatch fills"] if n_filled else []

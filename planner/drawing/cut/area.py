@@ -26,10 +26,20 @@ def signed_areas(paths: Sequence[Subpath]) -> FloatArray:
     return areas
 
 
+def go_round(paths: Sequence[Subpath]) -> BoolArray:
+    """(n,) whether each subpath goes round anything more one way than the other: then a fill of it has an area."""
+    does: BoolArray = np.abs(signed_areas(paths)) > _NOTHING * _extents(paths) ** 2
+    return does
+
+
+def _extents(paths: Sequence[Subpath]) -> FloatArray:
+    return np.array([float(np.ptp(path.beziers.reshape(-1, 2), axis=0).max()) for path in paths])
+
+
 def have_area(paths: Sequence[Subpath]) -> BoolArray:
     """(n,) whether a fill of each subpath by itself covers anything: a line there and back does not, an eight does."""
-    extents = np.array([float(np.ptp(path.beziers.reshape(-1, 2), axis=0).max()) for path in paths])
-    has_area: BoolArray = np.abs(signed_areas(paths)) > _NOTHING * extents**2
+    extents = _extents(paths)
+    has_area = go_round(paths)
     for index in np.flatnonzero(~has_area).tolist():
         from planner.drawing.cut.region import region
 

@@ -11,18 +11,15 @@ from shapely.geometry.base import BaseGeometry
 from planner.affine import scale_of
 from planner.arrays import FloatArray, frozen
 from planner.drawing.drawing import Drawing, Outline
-from planner.drawing.fill.areas import areas
+from planner.drawing.fill.areas import areas, lightness
 from planner.drawing.fill.contour import contours, spirals
 from planner.drawing.fill.hatch import hatched
 from planner.drawing.fill_options import FillBy, FillKind, FillOptions, WideStrokes
 from planner.drawing.flatten import flatten_all
-from planner.drawing.page import n_backgrounds
 from planner.drawing.subpath import polyline
 
 _GOLDEN_DEG = 137.50776405003785
 """From one colour's angle to the next: no two are ever near each other for a while."""
-_LIGHTEST = 0.97
-"""Of lightness: what is lighter is as good as paper."""
 _WIDER = 1.5
 """How much wider than the pen's line a stroke has to be to be drawn more than once."""
 _CHORD_MM = 0.01
@@ -49,8 +46,6 @@ def fill_lines(drawing: Drawing, options: FillOptions, svg_to_arm: FloatArray) -
         angles: dict[tuple[int, int, int], float] = {}
         for area in areas(drawing.scene, drawing.reading, svg_to_arm):
             spacing_mm = _spacing_mm(options, area.colour)
-            if spacing_mm is None:
-                continue
             turned = _GOLDEN_DEG * angles.setdefault(area.colour, len(angles)) if options.by is FillBy.COLOUR else 0.0
             inner = area.shape.buffer(-options.from_edge_mm) if options.from_edge_mm else area.shape
             lines = _lines(inner, options.kind, np.radians(options.angle_deg + turned), spacing_mm)
@@ -61,14 +56,6 @@ def fill_lines(drawing: Drawing, options: FillOptions, svg_to_arm: FloatArray) -
             lines = _passes(outline, outline.width * mm_per_unit, options, svg_to_arm)
             found += [_outline(line, svg_to_arm, back, outline.layer, outline.colour) for line in lines]
     return found
-
-
-def n_unfilled(drawing: Drawing) -> int:
-    """How many shapes have a fill that is drawn as its edge alone."""
-    if drawing.scene is None:
-        return 0
-    paints = [shape.fill for shape in drawing.scene.shapes[n_backgrounds(drawing.scene) :]]
-    return sum(paint is not None and _lightness(paint.colour) < _LIGHTEST for paint in paints)
 
 
 def _lines(area: BaseGeometry, kind: FillKind, angle_rad: float, spacing_mm: float) -> list[FloatArray]:
@@ -85,20 +72,9 @@ def _lines(area: BaseGeometry, kind: FillKind, angle_rad: float, spacing_mm: flo
     return lines + hatched(area, angle_rad + np.pi / 2, spacing_mm) if kind is FillKind.CROSS else lines
 
 
-def _spacing_mm(options: FillOptions, colour: tuple[int, int, int]) -> float | None:
-    """Between lines of an area of this colour; None where it is as light as paper."""
-    lightness = _lightness(colour)
-    if lightness >= _LIGHTEST:
-        return None
-    return options.spacing_mm / (1.0 - lightness) if options.by is FillBy.LIGHTNESS else options.spacing_mm
-
-
-def _lightness(colour: tuple[int, int, int]) -> float:
-    """The share of light that a paper of this colour sends back (relative luminance, IEC 61966-2-1)."""
-    linear = [
-        value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4 for value in np.divide(colour, 255)
-    ]
-    return float(np.dot(linear, (0.2126, 0.7152, 0.0722)))
+def _spacing_mm(options: FillOptions, colour: tuple[int, int, int]) -> float:
+    """Between lines of an area of this colour."""
+    return options.spacing_mm / (1.0 - lightness(colour)) if options.by is FillBy.LIGHTNESS else options.spacing_mm
 
 
 def is_wide(outline: Outline, options: FillOptions, mm_per_unit: float) -> bool:

@@ -14,8 +14,9 @@ from shapely.geometry.base import BaseGeometry
 
 from planner.arrays import FloatArray
 from planner.drawing.drawing import Drawing
+from planner.drawing.fill.areas import n_areas
 from planner.drawing.fill.contour import contours, spirals
-from planner.drawing.fill.fill import fill_lines, n_unfilled, with_fills
+from planner.drawing.fill.fill import fill_lines, with_fills
 from planner.drawing.fill.hatch import hatched
 from planner.drawing.fill_options import NO_FILL, FillBy, FillKind, FillOptions, WideStrokes, fill_options
 from planner.drawing.flatten import flatten_all
@@ -104,7 +105,7 @@ def test_what_is_painted_later_is_left_free_and_what_is_white_is_paper() -> None
     middle = Point(50.0, 0.0)  # of the page, on the paper
     assert lines.intersection(middle.buffer(19.9).difference(middle.buffer(8.0))).is_empty
     assert lines.intersection(middle.buffer(4.0)).length > 50.0
-    assert n_unfilled(drawing) == 2
+    assert drawing.scene is not None and n_areas(drawing.scene) == 2
     colours = {outline.colour for outline in fill_lines(drawing, options, TRUE_SIZE)}
     assert colours == {(255, 0, 0), (0, 0, 0)}
 
@@ -160,3 +161,8 @@ def test_too_many_lines_are_refused(tmp_path: Path) -> None:
     with pytest.raises(PlanError, match="wider --fill-spacing"):
         hatched(shapely.box(0, 0, 1e6, 1e6), 0.0, 0.1)
     assert not fill_lines(read('<rect width="9" height="9"/>'), NO_FILL, TRUE_SIZE)
+
+
+def test_lines_have_nothing_to_be_filled() -> None:
+    drawing = read('<path d="M5 5L90 50M5 5h9" stroke="red"/><path d="M20 50h30v30z" stroke="red"/>')
+    assert drawing.scene is not None and n_areas(drawing.scene) == 1
