@@ -133,6 +133,7 @@ class PlanSettings:
         skip_unreachable: Leave out what the arm cannot reach, and say so, instead of failing.
         weights: What method `path` spends the arm's redundancy on, None for the arm's own.
         reading: How the drawing is read.
+        cache: What is computed of an arm is looked for on disk, and kept there.
     """
 
     arm: str = "drawing_arm"
@@ -170,6 +171,7 @@ class PlanSettings:
     skip_unreachable: bool = False
     weights: ConfigurationWeights | None = None
     reading: ReadingOptions = AS_A_BROWSER
+    cache: bool = True
 
     def __post_init__(self) -> None:
         numbers = {
@@ -199,7 +201,7 @@ class PlanSettings:
             choices["by"] = one_of("by", self.by, GroupBy)
         for name, value in {**numbers, **choices}.items():
             object.__setattr__(self, name, value)
-        for name in ("fit", "keep_order", "mirror", "reverse", "skip_unreachable"):
+        for name in ("cache", "fit", "keep_order", "mirror", "reverse", "skip_unreachable"):
             if not isinstance(getattr(self, name), bool) and not (name == "fit" and self.fit is None):
                 raise UsageError(f"{name} is True or False, not {getattr(self, name)!r:.40}")
         self._check_placement()

@@ -3,14 +3,33 @@ on."""
 
 from __future__ import annotations
 
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+
 import pytest
 from hypothesis import settings
 
 from planner.arms.arm import Arm
+from planner.kept import FOLDER_VARIABLE
 from tests.arms.chains import DRAWING_ARMS, load_once
 
 settings.register_profile("laws", deadline=None)
 settings.load_profile("laws")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_sessionstart() -> Iterator[None]:
+    """All processes of a session share what they compute of arms, and nothing with other sessions."""
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        os.environ[FOLDER_VARIABLE] = tempfile.mkdtemp(prefix="kept-")
+    return (yield)
+
+
+def pytest_sessionfinish() -> None:
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        shutil.rmtree(os.environ.pop(FOLDER_VARIABLE), ignore_errors=True)
 
 
 @pytest.fixture(params=DRAWING_ARMS)

@@ -70,7 +70,7 @@ def against_copp(settings: PlanSettings) -> list[Row]:
 
 def _lissajous(arm: Arm, settings: PlanSettings) -> BSpline[np.float64]:
     """Joints over the share s in [0, 1] of the pen's way."""
-    model = ArmModel(arm)
+    model = ArmModel(arm, cache=False)
     canvas = canvas_of(model, settings.canvas, arm.pen.lift_mm)
     corners = canvas.to_arm_mm(np.array([[0.0, 0.0], [canvas.width_mm, canvas.height_mm]]))
     middle, half = corners.mean(axis=0), 0.4 * np.abs(corners[1] - corners[0])

@@ -49,7 +49,7 @@ def against_brute_force(drawing: Path, settings: PlanSettings) -> list[Row]:
     """The map's configuration path against a dense search over all configurations of the ray; and, the price of the
     same configuration at the same place, the map along short strokes against a dense search for each of them."""
     arm = load_arm(settings.arm)
-    model, weights = ArmModel(arm), settings.weights or arm.weights
+    model, weights = ArmModel(arm, cache=False), settings.weights or arm.weights
     cost, radii, samples = choice_of_configurations(model.kinematics, weights)
     nodes, sharp = sharp_configuration_path(cost, radii, samples)
     configuration_map = model.configuration_map(weights)

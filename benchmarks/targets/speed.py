@@ -25,7 +25,7 @@ _NLP_TARGETS = 2000
 def configurations(drawing: Path, settings: PlanSettings) -> list[Row]:
     """Targets are the points of the drawing's strokes, repeated as often as needed."""
     arm = load_arm(settings.arm)
-    model = ArmModel(arm)
+    model = ArmModel(arm, cache=False)
     points = np.concatenate(lines(placed_strokes(drawing, arm, settings)))
     tips = np.column_stack((points, np.zeros(len(points))))
     many = np.resize(tips, (_CLOSED_TARGETS, 3))

@@ -104,7 +104,7 @@ def drawings(folder: Path) -> list[Path]:
 def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> list[FloatArray]:
     """Polylines (n, 2) in arm mm in drawing order; taps have one point."""
     drawing = read_drawing(drawing_file)
-    model = ArmModel(arm)
+    model = ArmModel(arm, cache=False)
     canvas = canvas_of(model, settings.canvas, arm.pen.lift_mm)
     svg_to_arm, _, _, _ = pipeline._placed(drawing, canvas, settings)
     strokes, _, _ = pipeline._strokes(drawing, svg_to_arm, model, settings)
@@ -131,7 +131,7 @@ def followed(
 ) -> tuple[PenPaths, JointPaths, list[InfeasiblePath]]:
     """Pen and joint paths of polylines, and those that cannot be followed, before timing."""
     pen = smooth_paths(strokes, SMOOTH_SHARE * settings.tolerance_mm)
-    model = ArmModel(arm)
+    model = ArmModel(arm, cache=False)
     references = references_of(model, settings.method, settings.weights)
     return pen, *joint_paths(model.kinematics, references, pen)
 

@@ -52,6 +52,7 @@ class PlanOptions(TypedDict, total=False):
     skip_unreachable: bool
     weights: ConfigurationWeights | Mapping[str, float] | None
     reading: ReadingOptions | Mapping[str, object]
+    cache: bool
 
 
 def settings_with(settings: PlanSettings | None, arm: str | None, options: PlanOptions) -> PlanSettings:

@@ -49,6 +49,12 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         metavar="NAME|FILE",
         help="an arm by name, or its .toml file (default: %(default)s)",
     )
+    parser.add_argument(
+        "--no-cache",
+        dest="cache",
+        action="store_false",
+        help="compute what is known of the arm anew, and keep nothing (PLAN_CACHE names the folder, or says off)",
+    )
     motion = parser.add_argument_group("motion")
     motion.add_argument(
         "--weights",
@@ -146,6 +152,7 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
         skip_unreachable=options.skip_unreachable,
         weights=options.weights,
         reading=reading_of(options),
+        cache=options.cache,
     )
 
 

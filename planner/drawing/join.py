@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from planner.arrays import FloatArray, IntArray
+from planner.drawing.nearest import NearestPoints
 
 # Ends that share a cell of this share of the tolerance coincide but for rounding, and are joined first.
 _EXACT_SHARE = 0.02
@@ -102,10 +102,9 @@ def _coincident(
 def _near(free: IntArray, points: FloatArray, _: FloatArray, tolerance_mm: float) -> tuple[IntArray, IntArray]:
     """Pairs of ends within the tolerance, for each end its nearest."""
     k = min(_NEIGHBOURS + 1, len(free))
-    tree = cKDTree(points[free])
-    gaps, others = tree.query(points[free], k=k, distance_upper_bound=tolerance_mm * (1.0 + 1e-9))
-    rows, columns = np.nonzero(np.isfinite(gaps))
-    return free[rows], free[np.asarray(others, dtype=np.int64)[rows, columns]]
+    gaps, others = NearestPoints(points[free]).query(points[free], k)
+    rows, columns = np.nonzero(gaps <= tolerance_mm * (1.0 + 1e-9))
+    return free[rows], free[others[rows, columns]]
 
 
 def _chain(partner: IntArray, index: int) -> tuple[list[int], bool]:

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from planner.arrays import FloatArray, IntArray
 from planner.drawing.join import is_closed
 from planner.drawing.metric import STRAIGHT, Metric
+from planner.drawing.nearest import NearestPoints
 from planner.drawing.tour import improve
 
 _FIRST_NEIGHBOURS = 8
@@ -96,20 +96,20 @@ def _greedy(candidates: _Candidates, start: FloatArray) -> tuple[IntArray, IntAr
     exits = np.empty(n_strokes, dtype=np.int64)
     is_left = np.ones(n_strokes, dtype=np.bool_)
     alive = np.arange(len(candidates.owner))
-    tree = cKDTree(candidates.vectors)
+    tree = NearestPoints(candidates.vectors)
     place = start
     for position in range(n_strokes):
         nearest, k = -1, _FIRST_NEIGHBOURS
         while nearest < 0:
             k = min(k, len(alive))
-            found = np.atleast_1d(tree.query(place, k=k)[1])
+            found = tree.query(place[None], k)[1][0]
             usable = found[is_left[candidates.owner[alive[found]]]]
             if len(usable):
                 nearest = int(alive[usable[0]])
             elif k >= 8 * _FIRST_NEIGHBOURS:
                 # Too many strokes about are done with: plant the tree anew without them.
                 alive = alive[is_left[candidates.owner[alive]]]
-                tree = cKDTree(candidates.vectors[alive])
+                tree = NearestPoints(candidates.vectors[alive])
                 k = 1
             else:
                 k *= 4

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.drawing.join import is_closed
@@ -110,6 +109,8 @@ class _Dense:
 def _doubled(dense: _Dense, within_mm: float) -> BoolArray:
     """(n,) whether each point lies beside one that comes before and is kept."""
     owner = np.repeat(np.arange(len(dense.first) - 1), np.diff(dense.first))
+    from scipy.spatial import cKDTree  # heavy, and few ask for it
+
     tree = cKDTree(dense.points_mm)
     is_double = np.zeros(len(dense.points_mm), dtype=np.bool_)
     for begin in range(0, len(is_double), _AT_ONCE):

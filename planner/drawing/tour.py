@@ -8,10 +8,10 @@ and swaps entries for exits, which leaves all travel inside the piece as it was.
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.drawing.metric import Metric
+from planner.drawing.nearest import NearestPoints
 
 _NEIGHBOURS = 8
 _LONGEST_SEGMENT = 3
@@ -56,7 +56,7 @@ class _Search:
         k = min(_NEIGHBOURS + 2, len(self.nodes))
         scale = float(np.ptp(self.nodes, axis=0).max())
         self.least_gain = _GAIN * scale
-        near = cKDTree(self.nodes).query(self.nodes, k=k)[1]
+        near = NearestPoints(self.nodes).query(self.nodes, k)[1]
         rows = np.repeat(np.arange(len(self.nodes)), k)
         columns = near.ravel()
         is_other = rows // 2 != columns // 2

@@ -21,7 +21,7 @@ class PlanContext:
 
     @staticmethod
     def of(arm: Arm, settings: PlanSettings) -> PlanContext:
-        return PlanContext(ArmModel(arm), settings)
+        return PlanContext(ArmModel(arm, cache=settings.cache), settings)
 
     @cached_property
     def references(self) -> References:

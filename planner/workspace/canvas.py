@@ -15,6 +15,7 @@ import numpy as np
 from planner.arms.arm import JointKind
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import PlanError
+from planner.kept import Arrays
 from planner.kinematics.limits import SLACK, beyond_limits
 from planner.kinematics.link_clearance import KEPT_MM
 from planner.kinematics.projection import project
@@ -175,6 +176,15 @@ def usable_canvas(model: ArmModel, lift_mm: float) -> Canvas:
 
 def canvas_of(model: ArmModel, kind: CanvasKind, lift_mm: float) -> Canvas:
     """The canvas of that kind. Errors: PlanError where there is none."""
+
+    def sides() -> Arrays:
+        canvas = _canvas_of(model, kind, lift_mm)
+        return {"sides_mm": np.array([canvas.near_mm, canvas.far_mm, canvas.right_mm, canvas.left_mm])}
+
+    return Canvas(kind, *model.kept(f"{kind} canvas, {lift_mm!r} mm", sides)["sides_mm"].tolist())
+
+
+def _canvas_of(model: ArmModel, kind: CanvasKind, lift_mm: float) -> Canvas:
     if kind is CanvasKind.USABLE:
         return usable_canvas(model, lift_mm)
     innermost = min(float(branch.radii_mm[0]) for branch in model.branches())

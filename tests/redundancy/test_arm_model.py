@@ -21,6 +21,7 @@ KEPT = {
     "drawing/text/faces.py": "the faces of the package",
     "drawing/text/families.py": "the fonts of this machine",
     "execution/context.py": "the context that chunks of one plan share in a process",
+    "kept.py": "which version of the package this is",
     "spline.py": "constants",
 }
 

@@ -1,0 +1,106 @@
+"""Arrays that took a while to compute, kept on disk for the next process.
+
+A file holds the answer to one question. Its name is a digest of the question, of this package and of the libraries that
+answer it, so that no file is ever wrong: it is found, or it is not. Whoever deletes or damages files, or cannot write
+them, waits a little longer, and that is all.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import cache
+from importlib.metadata import version
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+
+from planner.arrays import FloatArray
+from planner.errors import OutputError
+from planner.files import written_aside
+
+_FOLDER = "drawing-arm-planner"
+FOLDER_VARIABLE = "PLAN_CACHE"
+"""Names the folder, or says `off`."""
+OFF = "off"
+_MOST_FILES = 200
+_CHECKSUM_BYTES = 16
+
+Arrays = Mapping[str, FloatArray]
+
+
+def kept(question: str, answer: Callable[[], Arrays]) -> Arrays:
+    """The arrays that `answer` gives, from disk where an earlier process has asked the same `question`, which has to
+    name all that the answer depends on. Errors: those of `answer`; those of the disk are none."""
+    folder = kept_folder()
+    if folder is None:
+        return answer()
+    file = folder / f"{_digest(question)}.kept"
+    found = _read(file)
+    if found is not None:
+        return found
+    answered = answer()
+    with suppress(OSError, OutputError, ValueError):
+        folder.mkdir(parents=True, exist_ok=True)
+        _drop_oldest(folder)
+        packed = BytesIO()
+        np.savez(packed, **answered)  # type: ignore[arg-type]
+        with written_aside(file, binary=True) as stream:
+            stream.write(_checksum(packed.getvalue()) + packed.getvalue())  # type: ignore[arg-type]
+    return answered
+
+
+def kept_folder() -> Path | None:
+    """Where answers are kept, by the rule of the platform; PLAN_CACHE names another, or says `off`: None."""
+    named = os.environ.get(FOLDER_VARIABLE)
+    if named == OFF:
+        return None
+    if named:
+        return Path(named)
+    import platformdirs
+
+    return platformdirs.user_cache_path(_FOLDER, appauthor=False)
+
+
+def _digest(question: str) -> str:
+    return _checksum(f"{_answering()}\n{question}".encode(errors="backslashreplace")).hex()
+
+
+@cache
+def _answering() -> str:
+    """What answers: the libraries, and this package as it lies on disk, edited or not."""
+    libraries = [f"{name} {version(name)}" for name in ("numpy", "casadi")]
+    root = Path(__file__).parent
+    modules = [
+        f"{folder} {entry.name} {entry.stat().st_size} {entry.stat().st_mtime_ns}"
+        for folder, _, _ in os.walk(root)
+        for entry in os.scandir(folder)
+        if entry.name.endswith(".py")
+    ]
+    return "\n".join([sys.version, *libraries, *sorted(modules)])
+
+
+def _read(file: Path) -> Arrays | None:
+    try:
+        content = file.read_bytes()
+    except OSError:
+        return None
+    checksum, packed = content[:_CHECKSUM_BYTES], content[_CHECKSUM_BYTES:]
+    if checksum != _checksum(packed):  # damaged: it is computed anew, and replaced
+        return None
+    with np.load(BytesIO(packed), allow_pickle=False) as arrays:
+        return {name: arrays[name] for name in arrays.files}
+
+
+def _checksum(packed: bytes) -> bytes:
+    return hashlib.blake2b(packed, digest_size=_CHECKSUM_BYTES).digest()
+
+
+def _drop_oldest(folder: Path) -> None:
+    files = sorted(folder.glob("*.kept"), key=lambda file: file.stat().st_mtime)
+    for file in files[: max(0, len(files) + 1 - _MOST_FILES)]:
+        file.unlink(missing_ok=True)
