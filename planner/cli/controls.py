@@ -1,4 +1,5 @@
-"""What people at the arm want of it: keys of the terminal, Ctrl-C, a request to terminate, a terminal that closes."""
+"""What people at the arm want of it: keys of the terminal or of a program, Ctrl-C, a request to terminate, a terminal
+that closes."""
 
 from __future__ import annotations
 
@@ -27,6 +28,7 @@ class Controls:
     def __init__(self) -> None:
         self._request = Request.GO
         self._keyboard: int | None = None
+        self._is_pipe = False
         self._awaits = False
 
     @property
@@ -49,8 +51,10 @@ class Controls:
                 keys = os.read(self._keyboard, 1024)
             except OSError:  # EIO: its other side is closed
                 keys = b""
-            if not keys:  # the terminal is gone: nobody is left to press a key
+            if not keys:  # the other side is gone: nobody is left to press a key
                 self._keyboard = None
+                if self._is_pipe:
+                    self._demand(Request.STOP)
             self._press(keys)
         return self._request
 
@@ -82,6 +86,15 @@ class Controls:
         self._demand(Request.STOP)
 
     @contextmanager
+    def pipe(self) -> Iterator[None]:
+        """Keys come by standard input, whatever that is, from a program; once it is gone, the arm is to stop."""
+        self._keyboard, self._is_pipe = sys.stdin.fileno(), True
+        try:
+            yield
+        finally:
+            self._keyboard = None
+
+    @contextmanager
     def keyboard(self) -> Iterator[None]:
         """Keys are read one by one and not shown, if standard input is a terminal and this program has it in front.
 
@@ -110,12 +123,12 @@ class Controls:
 
 
 @contextmanager
-def controls() -> Iterator[Controls]:
-    """Keys and signals become requests until this ends."""
+def controls(*, by_pipe: bool = False) -> Iterator[Controls]:
+    """Keys and signals become requests until this ends. by_pipe: a program presses the keys."""
     wishes = Controls()
     with (
         _handling({"SIGINT": wishes.interrupt, "SIGTERM": wishes.interrupt, "SIGHUP": wishes.hang_up}),
-        wishes.keyboard(),
+        wishes.pipe() if by_pipe else wishes.keyboard(),
     ):
         yield wishes
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from planner import DISTRIBUTION, __version__
+from planner.cli.events import add_events_option, refuse_events_among_results, tell_summary, told_progress
 from planner.cli.files import STANDARD_INPUT, input_file, output_file
 from planner.cli.interrupts import interrupts_remembered
 from planner.cli.output import check_target
@@ -75,6 +76,7 @@ def plan(arguments: list[str]) -> int:
         print_lines(_layers(drawing))
         return 0
     check_target(target, drawing)
+    refuse_events_among_results(options, target)
     if options.split and target == Path(STANDARD):
         raise UsageError("--split writes a file for each pen: name one with -o")
     if options.report:
@@ -84,7 +86,10 @@ def plan(arguments: list[str]) -> int:
     from planner.pipeline import plan as plan_drawing
     from planner.trajectory import write_trajectory
 
-    with progress(quiet=options.quiet, single=True) as show, interrupts_remembered() as raise_if_interrupted:
+    with (
+        told_progress() if options.events else progress(quiet=options.quiet, single=True) as show,
+        interrupts_remembered() as raise_if_interrupted,
+    ):
 
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
@@ -103,7 +108,9 @@ def plan(arguments: list[str]) -> int:
             report("report", 0, 1)
             written.append(write_report_of(planned, settings, arguments, options.report))
     print_warnings(planned.summary.warnings)
-    if not options.quiet:
+    if options.events:
+        tell_summary(planned.summary.lines(), map(str, written))
+    elif not options.quiet:
         wrote = [f"wrote {file}" for file in written if str(file) != STANDARD]
         print_summary([*planned.summary.lines(), *wrote], target)
     return 0
@@ -160,4 +167,5 @@ def plan_parser() -> Parser:
         "--split", action="store_true", help="a trajectory for each pen, traj_PEN.csv, instead of one with halts"
     )
     add_plan_options(parser)
+    add_events_option(parser)
     return parser

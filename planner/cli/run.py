@@ -20,6 +20,7 @@ def run(arguments: list[str]) -> int:
     from hardware.playback.recording import write_record
     from planner.cli.controls import breaking_off
     from planner.cli.run_claims import one_at_a_time
+    from planner.cli.run_events import tell_ended
     from planner.cli.run_files import refuse_unkept
     from planner.cli.run_job import dry_run_lines, examine
     from planner.cli.run_pictures import check_pictures, save_pictures
@@ -63,6 +64,8 @@ def run(arguments: list[str]) -> int:
     if rig.recording is not None and options.picture:
         positions = rig.recording().positions
         lines += save_pictures(options.picture, job, true_arm, positions, beginning.next_stroke)
-    if not options.quiet:
+    if options.events:
+        tell_ended(result.end.value, lines, complete=result.complete, parked=result.parked)
+    elif not options.quiet:
         print_summary(lines, *options.picture)
     return 0 if result.complete else EXIT_STOPPED

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from planner.cli.events import add_events_option, refuse_events_among_results
 from planner.cli.files import input_file, output_file
 from planner.cli.parser import Parser
 from planner.cli.quantities import number
@@ -108,6 +109,7 @@ def parser() -> Parser:
         help="also write what each servo is told, a .csv of one row a set point, which plan calibrate needs",
     )
     options.add_argument("--quiet", action="store_true", help="no progress and no summary")
+    add_events_option(options, "; keys are read from standard input, whose end stops the arm")
     return options
 
 
@@ -151,5 +153,6 @@ def refuse_contradictions(options: argparse.Namespace) -> None:
         raise UsageError("--true-arm says what the arm really is; leave out --seed")
     if options.frame and (options.resume or options.from_stroke is not None or options.record or options.picture):
         raise UsageError("--frame draws nothing; leave out --resume, --from-stroke, --record and --picture")
+    refuse_events_among_results(options, options.record, options.film, *options.picture)
     if options.resume and options.from_stroke is not None:
         raise UsageError("--resume finds the stroke itself; leave out --from-stroke")

@@ -23,6 +23,8 @@ from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arms.usual_servos import describes_servos, with_usual_servos
 from planner.cli.controls import KEYS, Controls, controls
+from planner.cli.events import tell
+from planner.cli.run_events import ToldRun
 from planner.cli.run_journal import RunJournal
 from planner.cli.terminal import print_note, print_warnings, progress
 from planner.counted import counted
@@ -81,9 +83,9 @@ def play_out(
     last_stroke = int(trajectory.stroke.max())
     journal = RunJournal(options, beginning, last_stroke, rig.driver, program.rate_hz, rig.clock)
     ended, complete = "broken off", False
-    with progress(quiet=options.quiet, single=True) as show:
+    with progress(quiet=options.quiet or options.events, single=True) as show:
         try:
-            with controls() as wishes:
+            with controls(by_pipe=options.events) as wishes:
                 if trajectory.pen_changes and not options.fast and not wishes.has_keys:
                     raise UsageError(
                         f"it needs {counted(len(trajectory.pens), 'pen')}, and somebody at a terminal to change them:"
@@ -93,8 +95,13 @@ def play_out(
                 if not options.quiet and options.port:
                     print_note(_announced(options, program, arm))
                 journal.opened()
-                display = _Display(show, rig.driver, program.rate_hz, last_stroke, None if options.quiet else wishes)
-                changes = _PenChanges(trajectory, wishes, asks=not options.fast)
+                every = max(round(program.rate_hz / _REPORTS_A_SECOND), 1)
+                display = (
+                    ToldRun(program, rig.driver, last_stroke, every)
+                    if options.events
+                    else _Display(show, rig.driver, every, last_stroke, None if options.quiet else wishes)
+                )
+                changes = _PenChanges(trajectory, wishes, asks=not options.fast, tells=options.events)
                 result = play(
                     program,
                     arm,
@@ -151,8 +158,8 @@ def _announced(options: argparse.Namespace, program: Program, arm: Arm) -> str:
 class _PenChanges:
     """Asks for the next pen, and waits for a key."""
 
-    def __init__(self, trajectory: Trajectory, wishes: Controls, *, asks: bool) -> None:
-        self._pens, self._wishes, self._asks = trajectory.pens, wishes, asks
+    def __init__(self, trajectory: Trajectory, wishes: Controls, *, asks: bool, tells: bool) -> None:
+        self._pens, self._wishes, self._asks, self._tells = trajectory.pens, wishes, asks, tells
         self._asked = -1
 
     def waiting(self, halt: int) -> bool:
@@ -161,16 +168,20 @@ class _PenChanges:
         if self._asked != halt:
             self._asked = halt
             self._wishes.await_key()
-            print_note(f"insert {self._pens[halt + 1].name}, then press space")
+            pen = self._pens[halt + 1]
+            if self._tells:
+                tell("insert", pen=pen.name, colour=pen.colour, number=halt + 1)
+            else:
+                print_note(f"insert {pen.name}, then press space")
         return self._wishes.is_awaiting()
 
 
 class _Display(Observer):
-    """Shows the keys once, where there are any, and progress a few times a second. wishes: None to leave keys out."""
+    """Shows the keys once, where there are any, and progress at every so many set points. wishes: None for no keys."""
 
-    def __init__(self, show: Report, driver: Driver, rate_hz: float, last_stroke: int, wishes: Controls | None) -> None:
+    def __init__(self, show: Report, driver: Driver, every: int, last_stroke: int, wishes: Controls | None) -> None:
         self._show, self._driver, self._last_stroke, self._wishes = show, driver, last_stroke, wishes
-        self._every = max(round(rate_hz / _REPORTS_A_SECOND), 1)
+        self._every = every
         self._calls = 0
 
     def connected(self) -> None:
