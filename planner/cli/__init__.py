@@ -117,6 +117,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.predict import predict
 
             return predict(rest)
+        case "serve":
+            from planner.cli.serve import serve
+
+            return serve(rest)
         case "fonts":
             from planner.cli.fonts import fonts
 

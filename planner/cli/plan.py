@@ -36,6 +36,7 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan calibrate ARM        an arm file from marks that the arm made
   plan predict traj.csv     how well an arm is going to draw
   plan jog --arm ARM        one joint at a time, on the first day of an arm
+  plan serve                a page to place, plan, watch and run drawings on
   plan ports                list the serial devices that are plugged in
   plan check traj.csv       an independent check of a trajectory
   plan plot traj.csv -o F   pictures of a trajectory
@@ -139,7 +140,7 @@ def plan_parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
     parser.usage = (
         "plan DRAWING.svg [-o traj.csv] [options]\n"
-        "       plan batch|lines|run|pattern|measure|calibrate|predict|jog|ports|check ...\n"
+        "       plan batch|lines|run|pattern|measure|calibrate|predict|jog|ports|check|serve ...\n"
         "       plan plot|compare|fonts|arm|paper|estimate|config ..."
     )
     parser.add_argument(

@@ -8,6 +8,7 @@ import base64
 import html
 import json
 from importlib.resources import files
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -21,14 +22,11 @@ _MOST_POSES = 20_000
 _LARGEST = 32_000  # of a 16 bit number
 
 
-def player_page(
-    motion: Motion,
-    canvas_corners_mm: FloatArray | None = None,
-    reach_mm: tuple[float, float] | None = None,
-    look: Look = USUAL,
-) -> str:
-    """The page. Of a long motion it holds some twenty thousand configurations, and moves the arm evenly between them;
-    what the pen draws it holds to a twentieth of a millimetre."""
+def film_of(
+    motion: Motion, canvas_corners_mm: FloatArray | None = None, reach_mm: tuple[float, float] | None = None
+) -> dict[str, Any]:
+    """The motion for a player, as plain values for JSON. Of a long motion it holds some twenty thousand configurations,
+    between which the arm moves evenly; what the pen draws it holds to a twentieth of a millimetre."""
     trajectory = motion.trajectory
     n_poses = int(np.clip((motion.end_s - motion.begin_s) * trajectory.rate_hz + 1, 2, _MOST_POSES))
     nodes_mm = motion.nodes_mm(np.linspace(motion.begin_s, motion.end_s, n_poses))
@@ -38,8 +36,7 @@ def player_page(
     low, high = view_mm([nodes_mm[..., :2].reshape(-1, 2), motion.tip_mm[:, :2], corners], reach_mm)
     margin_mm = 0.04 * float((high - low).max())
     scale_mm = max(float(np.abs(nodes_mm).max()), float(np.abs(motion.tip_mm).max()), 1.0) / _LARGEST
-    colours = look.colours
-    film = {
+    return {
         "name": trajectory.drawing or "trajectory",
         "arm": motion.arm.name,
         "rate": trajectory.rate_hz,
@@ -61,10 +58,22 @@ def player_page(
             float(side[..., 0].max()) + margin_mm,
             float(side[..., 1].max()) + margin_mm,
         ],
+    }
+
+
+def player_page(
+    motion: Motion,
+    canvas_corners_mm: FloatArray | None = None,
+    reach_mm: tuple[float, float] | None = None,
+    look: Look = USUAL,
+) -> str:
+    """The page of one film."""
+    colours = look.colours
+    film = film_of(motion, canvas_corners_mm, reach_mm) | {
         "colours": {
             key: getattr(colours, key)
             for key in ("surface", "ink", "quiet", "edge", "ring", "ring_edge", "drawn", "limit", "link")
-        },
+        }
     }
     template = files("planner.plots").joinpath("player.html").read_text(encoding="utf-8")
     # a name must not end the script that it stands in

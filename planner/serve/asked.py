@@ -1,0 +1,62 @@
+"""What the page asks of a plan, as options of the command line: those that read no file and write none."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from planner.cli.plan import plan_parser
+from planner.errors import UsageError
+
+_PAIRS = ("at",)
+_SWITCHES = ("mirror", "keep-order", "reverse", "skip-unreachable", "occlude", "no-fit", "fit")
+_VALUES = (
+    "arm", "method", "weights", "rate", "tolerance", "speed", "lift", "lowering-speed", "dwell", "canvas", "place",
+    "scale", "paper", "orientation", "align", "origin", "margin", "rotate", "copies", "layers", "by", "join", "simplify",
+    "min-length", "passes", "fill", "fill-angle", "fill-spacing", "fill-inset", "fill-by", "stroke-width", "text",
+    "crop", "dpi", "dedup",
+)  # fmt: skip
+_LONGEST = 200
+
+
+def arguments_of(asked: Mapping[str, Any], arms: Sequence[str]) -> list[str]:
+    """Options for `plan`. Each value is in one word with its option, so that none is taken for another. Errors:
+    UsageError for what is unknown, or means nothing."""
+    words: list[str] = []
+    for name, value in asked.items():
+        if name not in (*_PAIRS, *_SWITCHES, *_VALUES):
+            raise UsageError(f"there is no option '{name:.40}' here")
+        if value is None or value is False or value == "":
+            continue
+        if name in _SWITCHES:
+            words.append(f"--{name}")
+        elif name in _PAIRS:
+            words += [f"--{name}", *_numbers(name, value)]
+        else:
+            words.append(f"--{name}={_word(name, value)}")
+    if asked.get("arm") and asked["arm"] not in arms:
+        raise UsageError(f"there is no arm '{asked['arm']!s:.40}' here; there are {', '.join(arms)}")
+    plan_parser().parse_args(["drawing.svg", *words])
+    return words
+
+
+def command_of(drawing: str, trajectory: str, words: Sequence[str]) -> str:
+    """The same for a terminal."""
+    return shlex.join(["plan", drawing, *words, "-o", trajectory])
+
+
+def _word(name: str, value: object) -> str:
+    if isinstance(value, bool) or not isinstance(value, str | int | float) or len(str(value)) > _LONGEST:
+        raise UsageError(f"{name} is a text or a number, not {value!r:.40}")
+    return str(value)
+
+
+def _numbers(name: str, value: object) -> list[str]:
+    if (
+        not isinstance(value, list)
+        or len(value) != 2
+        or not all(isinstance(number, int | float) and not isinstance(number, bool) for number in value)
+    ):
+        raise UsageError(f"{name} is two numbers, not {value!r:.40}")
+    return [f"{number:.6f}".rstrip("0").rstrip(".") for number in value]
