@@ -25,8 +25,8 @@ examples:
   plan lines flower.svg --json lines.json --text outline --occlude
   plan lines flower.svg -o - | vpype read - linesort write sorted.svg
 
-The JSON is {"page_mm": [width, height], "lines": [{"points": [[x, y], ...], "layer": name, "colour": "#rrggbb"}],
-"skipped": {kind: count}}; a tap is a line of one point.
+The JSON is {"page_mm": [width, height], "has_page": whether the file has one, "lines": [{"points": [[x, y], ...],
+"layer": name, "colour": "#rrggbb"}], "skipped": {kind: count}}; a tap is a line of one point.
 
 exit codes: 0 done; 2 unusable input or usage"""
 

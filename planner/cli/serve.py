@@ -5,6 +5,7 @@ from __future__ import annotations
 import ipaddress
 import secrets
 import socket
+from contextlib import suppress
 from pathlib import Path
 
 from planner import DISTRIBUTION
@@ -14,8 +15,8 @@ from planner.cli.terminal import print_lines, print_note
 from planner.errors import UsageError
 
 _DESCRIPTION = """\
-Serve a page on this machine: drop a drawing, place it on the arm's paper, plan it, watch it, and run it on the arm, with
-a button that stops. It does what the commands do, and shows them. Other machines cannot reach it, unless --host says
+Serve a page on this machine: drop a drawing, place it on the arm's paper, plan it, watch it, and run it on the arm,
+with a button that stops. It does what the commands do, and shows them. Other machines cannot reach it, unless --host says
 so: then the address that is printed holds a token. Ctrl-C lifts the pen and parks the arm before it ends."""
 
 _EPILOG = """\
@@ -25,6 +26,7 @@ examples:
   plan serve --host 0.0.0.0            for others in the room, with a token"""
 
 _PORT = 8200
+_WAITING = 100
 _TOKEN_BYTES = 24
 
 
@@ -60,7 +62,8 @@ def serve(arguments: list[str]) -> int:
             timeout_graceful_shutdown=2,
         )
     )
-    server.run(sockets=[listening])
+    with suppress(KeyboardInterrupt):  # which uvicorn raises again once all is closed
+        server.run(sockets=[listening])
     return 0
 
 
@@ -78,6 +81,7 @@ def _listening(host: str, port: int) -> socket.socket:
         listening = socket.socket(family, socket.SOCK_STREAM)
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listening.bind((host, port))
+        listening.listen(_WAITING)  # from here on pages are answered, if only in a moment
     except OSError as error:
         raise UsageError(f"port {port} of {host} cannot be served: {error.strerror}; try another --port") from error
     return listening

@@ -51,7 +51,8 @@ def as_json(drawing: Drawing, lines: Sequence[PlainLine]) -> str:
         json.dumps(dict(sorted(drawing.skipped.items()))),
     )
     listed = ",\n".join(rows)
-    return f'{{"page_mm": {page},\n"lines": [\n{listed}\n],\n"skipped": {skipped}}}\n'
+    has_page = json.dumps(drawing.has_page)
+    return f'{{"page_mm": {page}, "has_page": {has_page},\n"lines": [\n{listed}\n],\n"skipped": {skipped}}}\n'
 
 
 def as_svg(drawing: Drawing, lines: Sequence[PlainLine]) -> str:

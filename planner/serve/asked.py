@@ -13,9 +13,9 @@ _PAIRS = ("at",)
 _SWITCHES = ("mirror", "keep-order", "reverse", "skip-unreachable", "occlude", "no-fit", "fit")
 _VALUES = (
     "arm", "method", "weights", "rate", "tolerance", "speed", "lift", "lowering-speed", "dwell", "canvas", "place",
-    "scale", "paper", "orientation", "align", "origin", "margin", "rotate", "copies", "layers", "by", "join", "simplify",
-    "min-length", "passes", "fill", "fill-angle", "fill-spacing", "fill-inset", "fill-by", "stroke-width", "text",
-    "crop", "dpi", "dedup",
+    "scale", "paper", "orientation", "align", "origin", "margin", "rotate", "copies", "layers", "by", "join",
+    "dedup", "simplify", "min-length", "passes", "fill", "fill-angle", "fill-spacing", "fill-inset", "fill-by",
+    "stroke-width", "text", "crop", "dpi",
 )  # fmt: skip
 _LONGEST = 200
 

@@ -130,8 +130,8 @@ def safe_name(name: str) -> str:
     """A file name of letters, digits and a few signs, that says what it was. Errors: UsageError for what is no drawing
     by its suffix."""
     last = name.replace("\\", "/").rpartition("/")[2]
-    stem, _, suffix = last.rpartition(".")
-    if f".{suffix.lower()}" not in SUFFIXES:
+    stem, dot, suffix = last.rpartition(".")
+    if f"{dot}{suffix.lower()}" not in SUFFIXES:
         raise UsageError(f"'{last[:_LONGEST_NAME]}' is not a drawing: its name should end in {', '.join(SUFFIXES)}")
     cleaned = re.sub(r"[^\w-]+", "-", stem).strip("-_")[:_LONGEST_NAME] or "drawing"
     return f"{cleaned}.{suffix.lower()}"

@@ -1,0 +1,423 @@
+// The page: what it knows, and how its parts hang together. All that matters lives in the server.
+
+import { get, post, remove, upload, watch } from "./api.js";
+import { ArmView } from "./arm_view.js";
+import { unpacked } from "./film.js";
+import { JointsView } from "./joints_view.js";
+import { canvasOf } from "./placement.js";
+import { Sheet } from "./sheet.js";
+
+const $ = (id) => document.getElementById(id);
+const form = $("options");
+const field = (name) => form.elements[name];
+const NUMBERS = ["margin", "rotate", "fill-spacing", "passes", "tolerance", "speed", "lift", "join", "rate"];
+const CHOICES = ["paper", "by", "layers", "fill", "text", "method"];
+const SWITCHES = ["mirror", "skip-unreachable"];
+
+const jobs = new Map();
+const arms = new Map();
+const lines = new Map();
+let [current, run, film, filmOf] = [null, null, null, null];
+let [time, plays, last] = [0, false, 0];
+
+const sheet = new Sheet($("sheet"), (moved) => {
+  field("at-x").value = moved ? moved.at[0] : "";
+  field("at-y").value = moved ? moved.at[1] : "";
+  field("scale").value = moved ? Number((100 * moved.scale).toFixed(3)) : "";
+  field("rotate").value = moved ? moved.rotate : 0;
+  placeChanged();
+});
+const armView = new ArmView($("arm-view"), $("arm-says"));
+const jointsView = new JointsView($("joints-view"));
+
+// -- options --------------------------------------------------------------------------------------------------------
+
+const numberIn = (name) => (field(name).value === "" ? null : Number(field(name).value));
+
+function placement() {
+  const [x, y] = [numberIn("at-x"), numberIn("at-y")];
+  const scale = numberIn("scale");
+  return {
+    paper: field("paper").value,
+    margin: numberIn("margin"),
+    rotate: numberIn("rotate") ?? 0,
+    mirror: field("mirror").checked,
+    at: x === null && y === null ? null : [x ?? 0, y ?? 0],
+    scale: scale === null ? null : scale / 100,
+  };
+}
+
+/** As the command line has them. */
+function asked() {
+  const found = { arm: $("arm").value };
+  const { at, scale } = placement();
+  if (at) found.at = at;
+  if (scale !== null) found.scale = scale;
+  for (const name of NUMBERS) {
+    const value = numberIn(name);
+    if (value !== null && !(name === "rotate" && value === 0)) found[name] = value;
+  }
+  for (const name of CHOICES) if (field(name).value) found[name] = field(name).value;
+  for (const name of SWITCHES) if (field(name).checked) found[name] = true;
+  return found;
+}
+
+function showOptions(options) {
+  form.reset();
+  if (options.arm) $("arm").value = options.arm;
+  if (options.at) [field("at-x").value, field("at-y").value] = options.at;
+  if (options.scale) field("scale").value = Number((100 * options.scale).toFixed(3));
+  for (const name of [...NUMBERS, ...CHOICES]) if (options[name] !== undefined) field(name).value = options[name];
+  for (const name of SWITCHES) field(name).checked = Boolean(options[name]);
+}
+
+function placeChanged() {
+  forgetFilm();
+  sheet.show({ options: placement() });
+  sayPlace();
+}
+
+function sayPlace() {
+  const says = $("sheet-says");
+  const found = sheet.placement;
+  says.className = "";
+  if (!found) return void (says.textContent = sheet.arm?.refusal ?? "");
+  const [width, height] = found.size.map((side) => (side * found.factor).toFixed(1));
+  const over = found.over > 0.01 ? ` It goes ${found.over.toFixed(1)} mm over the edge of what can be drawn on.` : "";
+  says.className = over ? "bad" : "";
+  says.textContent = `${width} × ${height} mm, ${(100 * found.factor).toFixed(1)} % of its size.${over}`;
+}
+
+// -- drawings -------------------------------------------------------------------------------------------------------
+
+async function choose(id) {
+  current = id;
+  const job = jobs.get(id);
+  drawJobs();
+  if (!job) return showNothing();
+  showOptions(job.options);
+  showJob(job);
+  await Promise.all([showArm(), showLines(job)]);
+  sheet.show({ options: placement() });
+  await showFilm(job);
+  sayPlace();
+}
+
+function showNothing() {
+  sheet.show({ lines: null, film: null });
+  forgetFilm();
+  for (const id of ["command-box", "run-box", "progress", "cancel"]) $(id).hidden = true;
+  $("plan-says").textContent = "";
+}
+
+async function showLines(job) {
+  if (!lines.has(job.id) && job.state !== "reading" && !(job.state === "failed" && !job.command)) {
+    const found = await get(`/api/jobs/${job.id}/lines`).catch(() => null);
+    if (found) {
+      found.hull = found.lines.flatMap((line) => line.points);
+      lines.set(job.id, found);
+    }
+  }
+  if (job.id === current) sheet.show({ lines: lines.get(job.id) ?? null });
+}
+
+async function showArm() {
+  const name = $("arm").value;
+  if (!arms.has(name)) arms.set(name, get(`/api/arms/${name}`).catch((error) => ({ name, refusal: error.message })));
+  const arm = await arms.get(name);
+  if (name === $("arm").value) sheet.show({ arm });
+  return arm;
+}
+
+function forgetFilm() {
+  film = filmOf = null;
+  plays = false;
+  sheet.show({ film: null });
+  armView.show(null);
+  jointsView.show(null);
+  $("film").hidden = true;
+}
+
+async function showFilm(job) {
+  if (job.state !== "planned" || filmOf === job.id) return;
+  const found = await get(`/api/jobs/${job.id}/motion`).catch(() => null);
+  if (!found || job.id !== current) return;
+  const arm = await showArm();
+  film = unpacked(found);
+  filmOf = job.id;
+  sheet.show({ film });
+  armView.show(film, arm);
+  jointsView.show(film);
+  $("film").hidden = false;
+  Object.assign($("time"), { min: film.begin, max: film.end });
+  seek(film.end);
+}
+
+function showJob(job) {
+  const isBusy = job.state === "planning" || job.state === "reading";
+  $("progress").hidden = !isBusy;
+  $("progress").value = job.progress;
+  $("cancel").hidden = job.state !== "planning";
+  $("plan").disabled = isBusy;
+  const says = $("plan-says");
+  says.className = job.state === "failed" ? "bad" : job.state === "planned" ? "good" : "";
+  says.textContent =
+    job.state === "failed" || job.error ? job.error
+    : job.state === "planning" ? `${job.stage || "waiting"}, ${Math.round(100 * job.progress)} %`
+    : job.state === "reading" ? "reading"
+    : job.state === "planned" ? job.summary[0] ?? "planned" : "";
+  $("plan-notes").replaceChildren(...[...(job.state === "planned" ? job.summary.slice(1) : []), ...job.notes].map(item));
+  const isPlanned = job.state === "planned";
+  $("command-box").hidden = !job.command;
+  $("command").textContent = job.command;
+  $("download").hidden = !isPlanned;
+  Object.assign($("download"), { href: `/api/jobs/${job.id}/trajectory`, download: job.trajectory });
+  $("run-box").hidden = !isPlanned;
+  $("resume").hidden = !job.resumable;
+}
+
+function item(text) {
+  const li = document.createElement("li");
+  li.textContent = text;
+  return li;
+}
+
+const SAYS = { reading: "reading", read: "not planned yet", planning: "planning", planned: "planned", failed: "cannot be drawn" };
+
+function drawJobs() {
+  const list = [...jobs.values()].sort((a, b) => b.made - a.made).map((job) => {
+    const li = document.createElement("li");
+    const choice = Object.assign(document.createElement("button"), { type: "button", className: "job" });
+    const [name, state] = [document.createElement("span"), document.createElement("small")];
+    name.textContent = job.name;
+    const drawn = job.drawn.length ? `, ${job.drawn.at(-1)}` : "";
+    state.textContent = (run?.job === job.id && run.stand !== "idle" ? run.stand : SAYS[job.state]) + drawn;
+    choice.append(name, state);
+    choice.setAttribute("aria-current", String(job.id === current));
+    choice.addEventListener("click", () => choose(job.id));
+    const away = Object.assign(document.createElement("button"), { type: "button", textContent: "×", title: "Throw away" });
+    away.setAttribute("aria-label", `Throw away ${job.name}`);
+    away.addEventListener("click", () => tried("plan-says", () => remove(`/api/jobs/${job.id}`)));
+    li.append(choice, away);
+    return li;
+  });
+  $("jobs").replaceChildren(...list);
+}
+
+async function add(files) {
+  for (const file of files) {
+    await tried("plan-says", async () => {
+      const job = await upload(file);
+      jobs.set(job.id, job);
+      await choose(job.id);
+    });
+  }
+}
+
+/** Does something, and says what was wrong with it if it is refused. */
+async function tried(id, work) {
+  try {
+    await work();
+  } catch (error) {
+    $(id).className = "bad";
+    $(id).textContent = error.message;
+  }
+}
+
+async function jobChanged(job) {
+  const before = jobs.get(job.id);
+  if (job.gone) jobs.delete(job.id);
+  else jobs.set(job.id, job);
+  if (job.gone && current === job.id) return choose([...jobs.keys()].at(-1) ?? null);
+  drawJobs();
+  if (job.id !== current) return;
+  showJob(job);
+  if (before?.state !== job.state) {
+    if (job.state !== "planned") forgetFilm();
+    await showLines(job);
+    sayPlace();
+    await showFilm(job);
+  }
+}
+
+// -- the film -------------------------------------------------------------------------------------------------------
+
+function seek(to) {
+  if (!film) return;
+  time = Math.min(Math.max(to, film.begin), film.end);
+  const sample = time * film.rate;
+  $("time").value = time;
+  $("time-says").textContent = `${time.toFixed(1)} of ${film.end.toFixed(1)} s`;
+  sheet.until = sample;
+  sheet.draw();
+  armView.at(time, sample);
+  jointsView.at(time);
+}
+
+function play(on) {
+  plays = on && film !== null;
+  $("play").textContent = plays ? "❚❚" : "▶";
+  $("play").setAttribute("aria-label", plays ? "Pause the film" : "Play");
+  if (!plays) return;
+  if (time >= film.end) time = film.begin;
+  last = performance.now();
+  requestAnimationFrame(step);
+}
+
+function step(now) {
+  if (!plays || !film) return;
+  seek(time + ((now - last) / 1000) * Number($("pace").value));
+  last = now;
+  if (time >= film.end) play(false);
+  else requestAnimationFrame(step);
+}
+
+// -- the run --------------------------------------------------------------------------------------------------------
+
+const STANDS = {
+  idle: "", starting: "connecting", playing: "drawing", paused: "paused, pen up", "awaiting pen": "waiting for a pen",
+  stopping: "stopping",
+};
+
+function runChanged(now) {
+  const before = run;
+  run = now;
+  const runs = run.stand !== "idle";
+  const name = jobs.get(run.job)?.name ?? "";
+  const left = run.left_s > 60 ? `${Math.round(run.left_s / 60)} min` : `${Math.round(run.left_s)} s`;
+  const share = run.total ? `, ${Math.floor((100 * run.reached) / run.total)} %, ${left} left` : "";
+  const standing = runs ? `${name}: ${STANDS[run.stand]}${share}` : run.ended ? `${name}: ${run.ended}` : "";
+  if ($("standing").textContent !== standing) $("standing").textContent = standing;
+  $("pause").hidden = !["playing", "paused"].includes(run.stand);
+  $("pause").textContent = run.stand === "paused" ? "Go on" : "Pause";
+  $("pen").hidden = run.stand !== "awaiting pen";
+  $("pen").textContent = `${run.pen} is in: go on`;
+  $("stop").hidden = $("hold").hidden = !runs;
+  $("run").disabled = $("resume").disabled = $("frame").disabled = runs;
+  if (run.job === current) {
+    $("run-says").className = !runs && run.ended ? (run.complete ? "good" : "bad") : "";
+    $("run-says").textContent = runs ? STANDS[run.stand] : run.ended;
+    $("run-notes").replaceChildren(...[...(runs ? run.link : run.lines)].map(item));
+    if (runs && film && filmOf === run.job && run.total) {
+      plays = false;
+      seek(run.sample / film.rate);
+    }
+  }
+  if (before?.stand !== run.stand) drawJobs();
+}
+
+function begin(more) {
+  return tried("run-says", async () => {
+    const driver = $("driver").value;
+    const options = { driver, "speed-factor": Number($("speed-factor").value), ...more };
+    if ($("port").value && !simulators.includes(driver)) options.port = $("port").value;
+    runChanged(await post(`/api/jobs/${current}/run`, options));
+  });
+}
+
+const wish = (name) => tried("run-says", async () => runChanged(await post(`/api/run/${name}`)));
+
+// -- everything together --------------------------------------------------------------------------------------------
+
+let simulators = [];
+
+async function start() {
+  const state = await get("/api/state");
+  simulators = state.simulators;
+  const option = (name) => Object.assign(document.createElement("option"), { textContent: name });
+  const chosen = $("arm").value;
+  $("arm").replaceChildren(...state.arms.map(option));
+  if (state.arms.includes(chosen)) $("arm").value = chosen;
+  $("driver").replaceChildren(...state.drivers.map(option));
+  jobs.clear();
+  for (const job of state.jobs) jobs.set(job.id, job);
+  run = state.run;
+  if (!jobs.has(current)) current = run.job && jobs.has(run.job) ? run.job : [...jobs.keys()].at(-1) ?? null;
+  await showArm();
+  await choose(current);
+  runChanged(state.run);
+}
+
+function tab(name) {
+  for (const each of ["sheet", "arm", "joints"]) {
+    $(`view-${each}`).hidden = each !== name;
+    $(`tab-${each}`).setAttribute("aria-selected", String(each === name));
+    $(`tab-${each}`).tabIndex = each === name ? 0 : -1;
+  }
+  sheet.draw();
+  armView.draw();
+  jointsView.draw();
+}
+
+for (const name of ["sheet", "arm", "joints"]) $(`tab-${name}`).addEventListener("click", () => tab(name));
+document.querySelector("[role=tablist]").addEventListener("keydown", (event) => {
+  const tabs = [...event.currentTarget.children];
+  const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+  if (!step) return;
+  const next = tabs[(tabs.indexOf(document.activeElement) + step + tabs.length) % tabs.length];
+  next.click();
+  next.focus();
+});
+$("file").addEventListener("change", (event) => {
+  add([...event.target.files]);
+  event.target.value = "";
+});
+document.addEventListener("dragover", (event) => {
+  event.preventDefault();
+  document.body.classList.add("over");
+});
+document.addEventListener("dragleave", () => document.body.classList.remove("over"));
+document.addEventListener("drop", (event) => {
+  event.preventDefault();
+  document.body.classList.remove("over");
+  add([...event.dataTransfer.files]);
+});
+$("arm").addEventListener("change", async () => {
+  forgetFilm();
+  await showArm();
+  placeChanged();
+});
+form.addEventListener("input", (event) => {
+  if (!event.target.closest("#run-box")) placeChanged();
+});
+form.addEventListener("submit", (event) => {
+  event.preventDefault();
+  if (!current) return void ($("plan-says").textContent = "Drop a drawing first.");
+  tried("plan-says", async () => jobChanged(await post(`/api/jobs/${current}/plan`, asked())));
+});
+$("fit").addEventListener("click", () => {
+  for (const name of ["at-x", "at-y", "scale"]) field(name).value = "";
+  placeChanged();
+});
+$("cancel").addEventListener("click", () => tried("plan-says", () => post(`/api/jobs/${current}/cancel`)));
+$("copy").addEventListener("click", () => navigator.clipboard?.writeText($("command").textContent));
+$("show-map").addEventListener("change", (event) => {
+  sheet.showsMap = event.target.checked;
+  sheet.draw();
+});
+$("play").addEventListener("click", () => play(!plays));
+$("time").addEventListener("input", (event) => {
+  plays = false;
+  seek(Number(event.target.value));
+});
+$("run").addEventListener("click", () => begin({}));
+$("resume").addEventListener("click", () => begin({ resume: true, driver: jobs.get(current).resumable }));
+$("frame").addEventListener("click", () => begin({ frame: true }));
+$("port").addEventListener("focus", async () => {
+  const found = await get("/api/ports").catch(() => []);
+  $("ports").replaceChildren(...found.map(({ port, likely }) => Object.assign(document.createElement("option"), { value: port, label: likely })));
+});
+$("pause").addEventListener("click", () => wish(run.stand === "paused" ? "resume" : "pause"));
+$("pen").addEventListener("click", () => wish("pen"));
+$("stop").addEventListener("click", () => wish("stop"));
+$("hold").addEventListener("click", () => wish("hold"));
+
+watch({
+  onJob: jobChanged,
+  onRun: runChanged,
+  onConnected: () => {
+    $("lost").hidden = true;
+    start().catch((error) => ($("plan-says").textContent = error.message));
+  },
+  onLost: () => ($("lost").hidden = false),
+});

@@ -1,0 +1,147 @@
+"""Who may ask for what."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tests.serve.served import SQUARE, Server
+
+JSON = {"Content-Type": "application/json"}
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    with Server(tmp_path_factory.mktemp("house"), "--demo") as running:
+        yield running
+
+
+@pytest.mark.parametrize(
+    "host", ["evil.example", "evil.example:80", "127.0.0.1.evil.example", "", "10.0.0.7:8200", "[::1"]
+)
+def test_names_of_others_are_not_served(server: Server, host: str) -> None:
+    assert server.answer("GET", "/api/state", headers={"Host": host})[0] == 421
+
+
+@pytest.mark.parametrize("host", ["localhost", "127.0.0.1", "[::1]:80", "LOCALHOST:9"])
+def test_names_of_this_machine_are(server: Server, host: str) -> None:
+    assert server.answer("GET", "/api/state", headers={"Host": host})[0] == 200
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Origin": "http://evil.example"},
+        {"Origin": "null"},
+        {"Origin": "http://127.0.0.1:1"},
+        {"Sec-Fetch-Site": "cross-site"},
+        {"Sec-Fetch-Site": "same-site"},
+    ],
+)
+def test_pages_of_others_change_nothing(server: Server, headers: dict[str, str]) -> None:
+    assert server.answer("POST", "/api/run/stop", b"{}", JSON | headers)[0] == 403
+
+
+@pytest.mark.parametrize(
+    "kind", ["text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x", ""]
+)
+def test_forms_change_nothing(server: Server, kind: str) -> None:
+    assert server.answer("POST", "/api/jobs?name=a.svg", SQUARE, {"Content-Type": kind})[0] == 415
+
+
+def test_asking_by_get_changes_nothing(server: Server) -> None:
+    job = server.upload()
+    for path in ("plan", "run", "cancel"):
+        assert server.answer("GET", f"/api/jobs/{job['id']}/{path}")[0] in (404, 405)
+    assert server.answer("GET", "/api/run/stop")[0] == 405
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/static/../app.py",
+        "/static/%2e%2e/app.py",
+        "/static/..%2f..%2fhouse.py",
+        "/api/jobs/..%2f..%2fetc/lines",
+        "/api/jobs/../../lines",
+        "/api/arms/..%2fso101",
+        "/api/arms/%2fetc%2fpasswd",
+        "//etc/passwd",
+    ],
+)
+def test_nothing_else_of_this_machine_is_read(server: Server, path: str) -> None:
+    status, _, body = server.answer("GET", path)
+    assert status in (400, 404, 405) and b"root:" not in body and b"import" not in body
+
+
+@pytest.mark.parametrize(
+    "name", ["../../x.svg", "..\\..\\x.svg", "/etc/x.svg", "a b\n;rm.svg", "é\u202e.svg", "." * 300 + ".svg"]
+)
+def test_names_of_files_stay_in_their_folder(server: Server, name: str) -> None:
+    from urllib.parse import quote
+
+    status, _, body = server.answer(
+        "POST", f"/api/jobs?name={quote(name)}", SQUARE, {"Content-Type": "application/octet-stream"}
+    )
+    assert status == 201 and b".." not in body.split(b'"name":')[1].split(b",")[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "status"),
+    [
+        ("x.exe", b"MZ", 400),
+        ("", SQUARE, 400),
+        ("svg", SQUARE, 400),
+        ("x.svg", b"", 400),
+        ("x.svg", b" " * (33 << 20), 413),
+    ],
+)
+def test_uploads_are_bounded(server: Server, name: str, content: bytes, status: int) -> None:
+    try:
+        given, _, _ = server.answer(
+            "POST", f"/api/jobs?name={name}", content, {"Content-Type": "application/octet-stream"}
+        )
+    except (BrokenPipeError, ConnectionResetError):  # refused before all of it was sent
+        given = 413
+    assert given == status
+    assert server.get("/api/state")
+
+
+def test_a_token_is_asked_for_where_others_can_reach_the_page(tmp_path: Path) -> None:
+    with Server(tmp_path, "--demo", "--host", "127.0.0.1", "--token", "correct-horse") as server:
+        assert server.address.endswith("/?token=correct-horse")
+        for headers in (
+            {},
+            {"Authorization": "Bearer wrong"},
+            {"Cookie": "plan_token=correct-hors"},
+            {"Cookie": ";;=,"},
+        ):
+            assert server.answer("GET", "/api/state", headers=headers)[0] == 401
+        assert server.answer("GET", "/api/state?token=correct-horse")[0] == 401  # the address of the page alone
+        assert server.answer("GET", "/?token=wrong")[0] == 401
+        status, headers, _ = server.answer("GET", "/?token=correct-horse")
+        assert status == 303 and headers["location"] == "/"
+        cookie = headers["set-cookie"]
+        assert "HttpOnly" in cookie and "samesite=strict" in cookie.lower()
+        for headers in ({"Cookie": cookie.split(";")[0]}, {"Authorization": "Bearer correct-horse"}):
+            assert server.answer("GET", "/api/state", headers=headers)[0] == 200
+
+
+def test_other_machines_cannot_reach_it_unless_asked(server: Server) -> None:
+    own = socket.gethostbyname(socket.gethostname())
+    if own.startswith("127."):
+        own = "127.0.0.2"
+    with pytest.raises(ConnectionRefusedError), socket.create_connection((own, server.port), timeout=2):
+        pass
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.binary(max_size=300))
+def test_no_body_breaks_the_server(server: Server, body: bytes) -> None:
+    for path in ("/api/jobs/0123456789abcdef/plan", "/api/run/pause"):
+        assert server.answer("POST", path, body, JSON)[0] in (400, 404)
