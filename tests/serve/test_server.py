@@ -110,7 +110,7 @@ def test_a_run_pauses_goes_on_and_stops_and_another_resumes_it(server: Server) -
 def test_hold_holds_at_once(server: Server) -> None:
     job = server.planned()
     server.post(f"/api/jobs/{job['id']}/run")
-    server.run("playing")
+    server.until(lambda: server.get("/api/state")["run"], lambda run: run["stroke"] >= 0)
     server.post("/api/run/hold")
     assert server.run("idle")["ended"] == "emergency stop"
 
