@@ -16,8 +16,8 @@ from planner.errors import UsageError
 
 _DESCRIPTION = """\
 Serve a page on this machine: drop a drawing, place it on the arm's paper, plan it, watch it, and run it on the arm,
-with a button that stops. It does what the commands do, and shows them. Other machines cannot reach it, unless --host says
-so: then the address that is printed holds a token. Ctrl-C lifts the pen and parks the arm before it ends."""
+with a button that stops. It does what the commands do, and shows them. Other machines cannot reach it, unless --host
+says so: then the address that is printed holds a token. Ctrl-C lifts the pen and parks the arm before it ends."""
 
 _EPILOG = """\
 examples:

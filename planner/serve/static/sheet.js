@@ -36,7 +36,7 @@ export class Sheet {
   }
 
   get placement() {
-    return this.lines && this.arm?.canvas_mm && placed(this.lines, canvasOf(this.arm), this.options);
+    return this.lines && this.options && this.arm?.canvas_mm && placed(this.lines, canvasOf(this.arm), this.options);
   }
 
   draw() {

@@ -1,0 +1,240 @@
+"""The page in a real browser: from a drawing that is dropped to one that is drawn."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, expect, sync_playwright
+
+from benchmarks.browser.chromium import executable
+from tests.serve.served import PAGE, SQUARE, Server
+
+TWO_PENS = (
+    b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 60" width="60mm" height="60mm" fill="none">'
+    b'<path d="M10 10 H50" stroke="#0050c8"/><path d="M10 30 H50" stroke="#c02000"/></svg>'
+)
+FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+PHONE = {"width": 360, "height": 740}
+AXE = Path(__file__).parent / "accessibility"
+SLOW_MS = 60_000
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    program = executable()
+    if program is None:
+        assert not os.environ.get("CI"), "chromium is not installed"
+        pytest.skip("chromium is not installed")
+    with sync_playwright() as driver:
+        running = driver.chromium.launch(executable_path=program, args=FLAGS)
+        yield running
+        running.close()
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    with Server(tmp_path_factory.mktemp("house"), "--demo") as running:
+        yield running
+
+
+@pytest.fixture
+def page(browser: Browser, server: Server) -> Iterator[Page]:
+    """An opened page; what its console complains of fails the test."""
+    opened = browser.new_page(viewport={"width": 1280, "height": 900})
+    complaints: list[str] = []
+    opened.on("pageerror", lambda error: complaints.append(str(error)))
+    opened.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
+    opened.on("request", lambda request: complaints.append(request.url) if is_elsewhere(server, request.url) else None)
+    opened.set_default_timeout(SLOW_MS)
+    opened.goto(server.address)
+    yield opened
+    opened.close()
+    assert not [complaint for complaint in complaints if "400 (Bad Request)" not in complaint]
+
+
+def is_elsewhere(server: Server, url: str) -> bool:
+    return not url.startswith((f"http://127.0.0.1:{server.port}/", "data:", "blob:"))
+
+
+def give(page: Page, content: bytes = SQUARE, name: str = "square.svg") -> None:
+    page.set_input_files("#file", {"name": name, "mimeType": "image/svg+xml", "buffer": content})
+    expect(page.locator("#sheet-says")).to_contain_text("mm", timeout=SLOW_MS)
+    expect(page.locator("#jobs .job").first).to_contain_text("not planned yet", timeout=SLOW_MS)
+
+
+def plan(page: Page) -> None:
+    page.click("#plan")
+    expect(page.locator("#plan-says")).to_have_class("good", timeout=SLOW_MS)
+    expect(page.locator("#film")).to_be_visible(timeout=SLOW_MS)
+
+
+def test_from_a_dropped_drawing_to_a_drawn_one(page: Page, server: Server) -> None:
+    give(page)
+    plan(page)
+    assert page.locator("#command").inner_text() == "plan square.svg --arm=drawing_arm -o square.csv"
+    page.click("#tab-arm")
+    page.fill("#time", "1")
+    expect(page.locator("#time-says")).to_contain_text("1.0 of")
+    page.click("#play")
+    expect(page.locator("#time-says")).not_to_contain_text(re.compile(r"^1\.[0-4] "), timeout=SLOW_MS)
+    page.click("#run")
+    expect(page.locator("#standing")).to_contain_text("drawing", timeout=SLOW_MS)
+    page.click("#pause")
+    expect(page.locator("#standing")).to_contain_text("paused", timeout=SLOW_MS)
+    page.reload()  # a run does not mind
+    expect(page.locator("#standing")).to_contain_text("paused", timeout=SLOW_MS)
+    page.click("#pause")
+    expect(page.locator("#standing")).to_contain_text("drawing", timeout=SLOW_MS)
+    page.click("#stop")
+    expect(page.locator("#standing")).to_contain_text("stopped", timeout=SLOW_MS)
+    page.click("#resume")
+    expect(page.locator("#standing")).to_contain_text("played", timeout=SLOW_MS)
+
+
+def test_a_drawing_is_moved_sized_and_turned_by_hand_and_lands_there(page: Page, server: Server) -> None:
+    give(page)
+    box = page.locator("#sheet").bounding_box()
+    assert box
+    middle = box["x"] + box["width"] / 2, box["y"] + box["height"] * 0.45
+    before = placement(page)
+    page.mouse.move(*middle)
+    page.mouse.down()
+    page.mouse.move(middle[0] + 60, middle[1], steps=5)
+    page.mouse.up()
+    moved = placement(page)
+    assert moved["at-x"] > 0 and not before["at-x"]
+    page.focus("#sheet")
+    page.keyboard.press("-")
+    page.keyboard.press("-")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("]")
+    now = placement(page)
+    assert now["scale"] < moved["scale"] and now["rotate"] == 1
+    plan(page)
+    job = server.get("/api/state")["jobs"][-1]
+    assert job["options"]["at"] == [now["at-x"], now["at-y"]]
+    assert abs(100 * job["options"]["scale"] - now["scale"]) < 0.01
+    film = server.get(f"/api/jobs/{job['id']}/motion")
+    assert film["end"] > 1
+    page.click("#fit")
+    assert placement(page)["at-x"] is None
+
+
+def placement(page: Page) -> dict[str, Any]:
+    return {
+        name: float(value) if (value := page.input_value(f"[name={name}]")) else None
+        for name in ("at-x", "at-y", "scale", "rotate")
+    }
+
+
+WHERE = """async ([key, arm, options]) => {
+  const { canvasOf, placed, turned } = await import("/static/placement.js");
+  const [lines, told] = await Promise.all([`/api/jobs/${key}/lines`, `/api/arms/${arm}`].map(
+    (path) => fetch(path).then((response) => response.json())));
+  lines.hull = lines.lines.flatMap((line) => line.points);
+  const canvas = canvasOf(told);
+  const { turn, box, factor, corner, over } = placed(lines, canvas, options);
+  return [over, [[0, 0], [1, 0], [0, 1]].map((point) => {
+    const [x, y] = turned(turn, point);
+    return [canvas.far - (corner[1] + factor * (y - box.top)), canvas.left - (corner[0] + factor * (x - box.left))];
+  })];
+}"""
+"""Where the page shows three points of the drawing, in arm mm, and how far ink would be over the edge."""
+
+
+PLACES: list[tuple[bool, dict[str, Any]]] = [
+    (True, {}),
+    (False, {"arm": "so101", "rotate": 30}),
+    (True, {"paper": "a4", "rotate": 90, "arm": "so101"}),
+    (False, {"margin": 12, "mirror": True, "paper": "a6"}),
+    (True, {"scale": 0.7, "rotate": -75, "mirror": True}),
+    (True, {"at": [12.5, 7], "scale": 0.5, "rotate": 10, "paper": "a6"}),
+    (False, {"at": [3, 4]}),
+    (True, {"scale": 3}),
+]
+
+
+def test_the_sheet_shows_where_the_planner_puts_a_drawing(page: Page, server: Server) -> None:
+    for has_page, options in PLACES:
+        job = server.upload(SQUARE if has_page else SQUARE.replace(PAGE.encode(), b""))
+        usual = {"rotate": 0, "mirror": False, "at": None, "scale": None, "margin": None, "paper": ""}
+        arm = options.get("arm", "drawing_arm")
+        over, shown = page.evaluate(WHERE, [job["id"], arm, usual | options])
+        server.post(f"/api/jobs/{job['id']}/plan", options)
+        planned = server.settled(job["id"])
+        assert (over <= 0.01) == (planned["state"] == "planned"), (options, planned["error"])
+        if planned["state"] == "planned":
+            _, _, trajectory = server.answer("GET", f"/api/jobs/{job['id']}/trajectory")
+            head = next(line for line in trajectory.decode().splitlines() if line.startswith("# svg_to_arm_mm:"))
+            a, b, c, d, e, f = map(float, head.split(":")[1].split())
+            mm = 1.0 if has_page else 96.0 / 25.4  # of a drawing without a page, units are pixels
+            wanted = [[e, f], [e + mm * a, f + mm * b], [e + mm * c, f + mm * d]]
+            assert shown == [pytest.approx(point, abs=2e-3) for point in wanted], options
+
+
+def test_pens_are_asked_for_and_put_in(page: Page) -> None:
+    give(page, TWO_PENS, "two.svg")
+    page.select_option("[name=by]", "colour")
+    plan(page)
+    page.click("#run")
+    expect(page.locator("#pen")).to_be_visible(timeout=SLOW_MS)
+    page.click("#pen")
+    expect(page.locator("#standing")).to_contain_text("played", timeout=SLOW_MS)
+
+
+def test_a_second_page_sees_and_stops_what_the_first_began(page: Page, browser: Browser, server: Server) -> None:
+    give(page)
+    plan(page)
+    other = browser.new_page(viewport=PHONE)
+    other.goto(server.address)
+    page.click("#run")
+    expect(other.locator("#standing")).to_contain_text("drawing", timeout=SLOW_MS)
+    other.click("#stop")
+    expect(page.locator("#standing")).to_contain_text("stopped", timeout=SLOW_MS)
+    other.close()
+
+
+def test_what_goes_wrong_is_said(page: Page) -> None:
+    page.set_input_files("#file", {"name": "notes.txt", "mimeType": "text/plain", "buffer": b"hello"})
+    expect(page.locator("#plan-says")).to_contain_text("not a drawing")
+    page.set_input_files("#file", {"name": "bad.svg", "mimeType": "image/svg+xml", "buffer": b"<svg"})
+    expect(page.locator("#plan-says")).to_contain_text("bad.svg", timeout=SLOW_MS)
+    give(page)
+    page.fill("[name=scale]", "900")
+    expect(page.locator("#sheet-says")).to_contain_text("over the edge")
+    page.click("#plan")
+    expect(page.locator("#plan-says")).to_have_class("bad", timeout=SLOW_MS)
+
+
+@pytest.mark.parametrize(("viewport", "scheme"), [({"width": 1280, "height": 900}, "light"), (PHONE, "dark")])
+def test_people_with_any_senses_can_use_it(browser: Browser, server: Server, viewport: Any, scheme: Any) -> None:
+    page = browser.new_page(viewport=viewport, color_scheme=scheme)
+    page.goto(server.address)
+    give(page)
+    plan(page)
+    for view in ("sheet", "arm", "joints"):
+        page.click(f"#tab-{view}")
+        page.evaluate(axe_script())
+        found = page.evaluate("axe.run()")
+        serious = [fault for fault in found["violations"] if fault["impact"] in ("serious", "critical")]
+        assert not serious, json.dumps(serious, indent=1)[:3000]
+    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    page.close()
+
+
+def axe_script() -> str:
+    script = AXE / "node_modules" / "axe-core" / "axe.min.js"
+    if not script.is_file():
+        if shutil.which("npm") is None:
+            assert not os.environ.get("CI"), "npm is not installed"
+            pytest.skip("npm is not installed")
+        subprocess.run(["npm", "install", "--no-package-lock", "--silent"], cwd=AXE, check=True)
+    return script.read_text(encoding="utf-8")
