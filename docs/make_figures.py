@@ -2,8 +2,8 @@
 
     python docs/make_figures.py [NAME ...]
 
-`configurations_tradeoff.png` is of `benchmarks/tradeoff.py`. Those of the first hour and of symptoms need the extra
-`test`.
+`configurations_tradeoff.png` is of `benchmarks/tradeoff.py`. Those of the first hour, of symptoms and of the page need
+the extra `test`, and Chromium.
 """
 
 from __future__ import annotations
@@ -47,6 +47,7 @@ FIRST_HOUR = {
 }
 """What each is made of, of what the first hour leaves."""
 SYMPTOMS = "symptoms.png"
+PAGE = ("page-sheet.png", "page-arm.png", "page-joints.png", "page-phone.png")
 _WIDTH_PX, _COLOURS, _QUALITY = 1000, 256, 70
 
 
@@ -55,12 +56,16 @@ def make(names: list[str]) -> None:
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         _run([str(GARDEN), "-o", "traj.csv", "--quiet"])
-        wanted = names or [*PLOTS, *COMPARISONS, *FIRST_HOUR, SYMPTOMS]
+        wanted = names or [*PLOTS, *COMPARISONS, *FIRST_HOUR, SYMPTOMS, *PAGE]
         if any(name in FIRST_HOUR for name in wanted):
             from first_hour import first_hour
 
             first_hour(GARDEN)
             _run(["plot", "pattern.csv", "--kind", "drawing", "-o", "pattern.png"])
+        if any(name in PAGE for name in wanted):
+            from page_pictures import page_pictures
+
+            page_pictures(Path(folder), GARDEN)
         for name in wanted:
             if name in PLOTS:
                 _run(["plot", "--dpi", "100", *PLOTS[name], "-o", str(IMAGES / name)])
@@ -68,6 +73,8 @@ def make(names: list[str]) -> None:
                 _run(["compare", *COMPARISONS[name], "--plot", str(IMAGES / name)])
             elif name in FIRST_HOUR:
                 _small(Path(FIRST_HOUR[name]), IMAGES / name)
+            elif name in PAGE:
+                _small(Path(name), IMAGES / name)
             else:
                 _symptoms(IMAGES / name)
 

@@ -91,11 +91,15 @@ function sayPlace() {
 // -- drawings -------------------------------------------------------------------------------------------------------
 
 async function choose(id) {
+  const isOther = id !== current;
   current = id;
   const job = jobs.get(id);
   drawJobs();
   if (!job) return showNothing();
-  showOptions(job.options);
+  if (isOther) {
+    forgetFilm();
+    showOptions(job.options);
+  }
   showJob(job);
   await Promise.all([showArm(), showLines(job)]);
   sheet.show({ options: placement() });
@@ -103,11 +107,12 @@ async function choose(id) {
   sayPlace();
 }
 
-function showNothing() {
-  sheet.show({ lines: null, film: null });
+async function showNothing() {
+  sheet.show({ lines: null, options: placement() });
   forgetFilm();
   for (const id of ["command-box", "run-box", "progress", "cancel"]) $(id).hidden = true;
   $("plan-says").textContent = "";
+  await showArm();
 }
 
 async function showLines(job) {
@@ -123,9 +128,13 @@ async function showLines(job) {
 
 async function showArm() {
   const name = $("arm").value;
+  if (sheet.arm?.name !== name) $("sheet-says").textContent = `Working out what ${name} reaches …`;
   if (!arms.has(name)) arms.set(name, get(`/api/arms/${name}`).catch((error) => ({ name, refusal: error.message })));
   const arm = await arms.get(name);
-  if (name === $("arm").value) sheet.show({ arm });
+  if (name === $("arm").value && sheet.arm !== arm) {
+    sheet.show({ arm });
+    sayPlace();
+  }
   return arm;
 }
 
@@ -182,6 +191,10 @@ function item(text) {
   return li;
 }
 
+const STANDS = {
+  idle: "", starting: "connecting", playing: "drawing", paused: "paused, pen up", "awaiting pen": "waiting for a pen",
+  stopping: "stopping",
+};
 const SAYS = { reading: "reading", read: "not planned yet", planning: "planning", planned: "planned", failed: "cannot be drawn" };
 
 function drawJobs() {
@@ -191,7 +204,7 @@ function drawJobs() {
     const [name, state] = [document.createElement("span"), document.createElement("small")];
     name.textContent = job.name;
     const drawn = job.drawn.length ? `, ${job.drawn.at(-1)}` : "";
-    state.textContent = (run?.job === job.id && run.stand !== "idle" ? run.stand : SAYS[job.state]) + drawn;
+    state.textContent = (run?.job === job.id && run.stand !== "idle" ? STANDS[run.stand] : SAYS[job.state]) + drawn;
     choice.append(name, state);
     choice.setAttribute("aria-current", String(job.id === current));
     choice.addEventListener("click", () => choose(job.id));
@@ -274,11 +287,6 @@ function step(now) {
 
 // -- the run --------------------------------------------------------------------------------------------------------
 
-const STANDS = {
-  idle: "", starting: "connecting", playing: "drawing", paused: "paused, pen up", "awaiting pen": "waiting for a pen",
-  stopping: "stopping",
-};
-
 function runChanged(now) {
   const before = run;
   run = now;
@@ -332,9 +340,7 @@ async function start() {
   jobs.clear();
   for (const job of state.jobs) jobs.set(job.id, job);
   run = state.run;
-  if (!jobs.has(current)) current = run.job && jobs.has(run.job) ? run.job : [...jobs.keys()].at(-1) ?? null;
-  await showArm();
-  await choose(current);
+  await choose(jobs.has(current) ? current : jobs.has(run.job) ? run.job : [...jobs.keys()].at(-1) ?? null);
   runChanged(state.run);
 }
 

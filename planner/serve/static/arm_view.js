@@ -88,7 +88,9 @@ export class ArmView {
   #addLinks(film, arm, reach) {
     const material = new three.MeshStandardMaterial({ color: colourOf("--link"), roughness: 0.55, metalness: 0.15 });
     const pen = new three.MeshStandardMaterial({ color: colourOf("--accent"), roughness: 0.4 });
-    const last = film.nodes - 2;
+    const first = film.nodesAt(film.begin);
+    const isLink = (_, k) => Math.hypot(...[0, 1, 2].map((axis) => first[k + 1][axis] - first[k][axis])) > 0.5;
+    const last = first.slice(0, -1).findLastIndex(isLink); // which holds the pen
     this.links = Array.from({ length: film.nodes - 1 }, (_, k) => {
       const thickness = arm?.joints?.[k]?.thickness_mm ?? 0.05 * reach;
       const radius = k === last ? 0.012 * reach : Math.max(thickness / 2, 0.008 * reach);
