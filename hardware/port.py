@@ -147,8 +147,9 @@ def _why_not(name: str, error: Exception) -> str:
 
 def _permission(device: Path) -> str:
     group = "root"
-    with suppress(OSError, KeyError, NotImplementedError):
-        group = device.group()
+    if sys.platform != "win32":
+        with suppress(OSError, KeyError):
+            group = device.group()
     if group == "root":
         return "ask whoever administers this computer"
     return f"join the group that may open it: sudo usermod -aG {group} $USER, then log in again"

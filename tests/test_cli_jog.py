@@ -27,7 +27,8 @@ from hardware.playback.claims import claim, claim_of_port
 from hardware.simulation.simulated_arm import SimulatedArm
 from planner.arms.arm_file import arm_file_text, load_arm
 from planner.cli import main
-from planner.cli.jog_keyboard import Keyboard, Keys
+from planner.cli.jog_keyboard import Keyboard, KeyCommands
+from planner.cli.keys import TerminalKeys
 from planner.errors import UsageError
 from tests.drawn_shapes import lines_svg
 from tests.hardware.controllers.bus import DynamixelModel, FeetechModel
@@ -296,7 +297,7 @@ def test_a_port_is_jogged_or_played_by_one_process_at_a_time(
 
 def test_keys_that_stop_are_seen_while_a_joint_moves_and_commands_can_be_typed() -> None:
     near, far = os.pipe()
-    keyboard = Keyboard(near)
+    keyboard = Keyboard(TerminalKeys(near))
     keyboard.watch()
     os.write(far, b"+\x1b[A:joint q")
     keyboard.watch()
@@ -307,13 +308,13 @@ def test_keys_that_stop_are_seen_while_a_joint_moves_and_commands_can_be_typed()
         near, far = os.pipe()
         os.write(far, stop)
         with pytest.raises(KeyboardInterrupt):
-            Keyboard(near).watch()
+            Keyboard(TerminalKeys(near)).watch()
     os.write(far, b"q")
-    assert not Keyboard(near).agrees()
+    assert not Keyboard(TerminalKeys(near)).agrees()
 
 
 def test_every_key_is_a_command_or_nothing() -> None:
-    keys = Keys()
+    keys = KeyCommands()
     assert keys.command("+") == "move 1"
     assert keys.command("[") is None
     assert keys.command("-") == "move -0.5"

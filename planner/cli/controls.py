@@ -3,22 +3,17 @@ that closes."""
 
 from __future__ import annotations
 
-import os
-import re
-import select
 import signal
-import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext
 from types import FrameType
 
 from hardware.playback.request import Request
+from planner.cli.keys import Keys, PipedKeys, terminal_keys
 
 KEYS = "space or p pauses and resumes, q or Ctrl-C stops and parks, x or Esc stops at once and holds"
 
 _PAUSE, _STOP, _EMERGENCY_STOP = b" pP", b"qQ", (b"x", b"X", b"\x1b")
-SEQUENCES = re.compile(rb"\x1b(\[[0-?]*[ -/]*[@-~]|O.)")
-"""What arrows and function keys arrive as, which begins as Esc does."""
 _SEVERITY = (Request.GO, Request.PAUSE, Request.STOP, Request.EMERGENCY_STOP)
 
 
@@ -27,13 +22,13 @@ class Controls:
 
     def __init__(self) -> None:
         self._request = Request.GO
-        self._keyboard: int | None = None
-        self._is_pipe = False
+        self._keys: Keys | None = None
+        self._by_program = False
         self._awaits = False
 
     @property
     def has_keys(self) -> bool:
-        return self._keyboard is not None
+        return self._keys is not None
 
     def await_key(self) -> None:
         """The next key that pauses is an answer instead."""
@@ -46,20 +41,16 @@ class Controls:
 
     def request(self) -> Request:
         """Looks whether a key has been pressed, and never waits."""
-        if self._keyboard is not None and select.select([self._keyboard], [], [], 0)[0]:
-            try:
-                keys = os.read(self._keyboard, 1024)
-            except OSError:  # EIO: its other side is closed
-                keys = b""
-            if not keys:  # the other side is gone: nobody is left to press a key
-                self._keyboard = None
-                if self._is_pipe:
-                    self._demand(Request.STOP)
+        keys = self._keys.arrived() if self._keys is not None else b""
+        if keys is None:  # nobody is left to press a key
+            self._keys = None
+            if self._by_program:
+                self._demand(Request.STOP)
+        else:
             self._press(keys)
         return self._request
 
     def _press(self, keys: bytes) -> None:
-        keys = SEQUENCES.sub(b"", keys)
         for key in (keys[place : place + 1] for place in range(len(keys))):
             if key in _EMERGENCY_STOP:
                 self._demand(Request.EMERGENCY_STOP)
@@ -86,49 +77,23 @@ class Controls:
         self._demand(Request.STOP)
 
     @contextmanager
-    def pipe(self) -> Iterator[None]:
-        """Keys come by standard input, whatever that is, from a program; once it is gone, the arm is to stop."""
-        self._keyboard, self._is_pipe = sys.stdin.fileno(), True
-        try:
-            yield
-        finally:
-            self._keyboard = None
-
-    @contextmanager
-    def keyboard(self) -> Iterator[None]:
-        """Keys are read one by one and not shown, if standard input is a terminal and this program has it in front.
-
-        The terminal is as it was afterwards, however that comes.
-        """
-        try:
-            import termios
-            import tty
-
-            terminal = sys.stdin.fileno()
-            in_front = os.isatty(terminal) and os.tcgetpgrp(terminal) == os.getpgrp()
-        except (ImportError, AttributeError, OSError, ValueError):  # no terminals of this kind, or no standard input
-            in_front = False
-        if not in_front:
-            yield
-            return
-        before = termios.tcgetattr(terminal)
-        try:
-            tty.setcbreak(terminal)
-            self._keyboard = terminal
-            yield
-        finally:
-            self._keyboard = None
-            with suppress(termios.error):  # the terminal may be gone
-                termios.tcsetattr(terminal, termios.TCSADRAIN, before)
+    def keyboard(self, *, by_program: bool = False) -> Iterator[Keys | None]:
+        """Keys count until this ends: of the terminal, or by standard input from a program, whose end stops the arm."""
+        with nullcontext(PipedKeys()) if by_program else terminal_keys() as keys:
+            self._keys, self._by_program = keys, by_program
+            try:
+                yield keys
+            finally:
+                self._keys = None
 
 
 @contextmanager
-def controls(*, by_pipe: bool = False) -> Iterator[Controls]:
-    """Keys and signals become requests until this ends. by_pipe: a program presses the keys."""
+def controls(*, by_program: bool = False) -> Iterator[Controls]:
+    """Keys and signals become requests until this ends. by_program: one presses the keys."""
     wishes = Controls()
     with (
         _handling({"SIGINT": wishes.interrupt, "SIGTERM": wishes.interrupt, "SIGHUP": wishes.hang_up}),
-        wishes.pipe() if by_pipe else wishes.keyboard(),
+        wishes.keyboard(by_program=by_program),
     ):
         yield wishes
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from planner.cli.files import output_file
 from planner.cli.jog_commands import COMMANDS, carry_out
 from planner.cli.jog_keyboard import Keyboard
+from planner.cli.keys import terminal_keys
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.terminal import print_lines, print_note
@@ -209,16 +210,10 @@ def _follow(commands: Iterator[str], jogging: Jogging, save: Callable[[], None],
 @contextmanager
 def _keyboard(options: argparse.Namespace) -> Iterator[Keyboard | None]:
     """None for a script, or where standard input is no terminal whose keys can be read one by one."""
-    if options.script or not sys.stdin.isatty():
-        yield None
-        return
-    from planner.cli.controls import Controls
-
-    controls = Controls()
-    with controls.keyboard():
-        if controls.has_keys:
+    with nullcontext() if options.script else terminal_keys() as keys:
+        if keys is not None:
             print_note(COMMANDS[COMMANDS.index("keys:") :])
-        yield Keyboard(sys.stdin.fileno()) if controls.has_keys else None
+        yield None if keys is None else Keyboard(keys)
 
 
 def _lines(script: str | None) -> Iterator[str]:

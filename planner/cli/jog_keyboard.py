@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import select
 import sys
 from collections.abc import Iterator
 
-from planner.cli.controls import SEQUENCES
+from planner.cli.keys import Keys
 
 _ESCAPE = "\x1b"
 _STOP = f"xX{_ESCAPE}"
@@ -27,7 +25,7 @@ _KEYS = {
 }
 
 
-class Keys:
+class KeyCommands:
     """Keys to commands. step: deg or mm."""
 
     def __init__(self, step: float = 1.0) -> None:
@@ -48,16 +46,15 @@ class Keys:
 
 
 class Keyboard:
-    """Keys of the terminal with the descriptor `terminal`, as lines of commands."""
+    """Keys as lines of commands."""
 
-    def __init__(self, terminal: int) -> None:
-        self._terminal = terminal
+    def __init__(self, keys: Keys) -> None:
+        self._keys = keys
         self._pressed = ""
 
     def watch(self) -> None:
         """Never waits. Errors: KeyboardInterrupt where a key asks to stop at once."""
-        while select.select([self._terminal], [], [], 0)[0] and self._read():
-            pass
+        self._read(wait=False)
         if any(key in _STOP for key in self._pressed):
             raise KeyboardInterrupt
 
@@ -67,7 +64,7 @@ class Keyboard:
 
     def commands(self) -> Iterator[str]:
         """One after the other, until the terminal is gone. Errors: KeyboardInterrupt as `watch`."""
-        keys = Keys()
+        keys = KeyCommands()
         while (key := self._next()) is not None:
             command = self._typed() if key == _COMMAND else keys.command(key)
             if command is not None:
@@ -93,11 +90,8 @@ class Keyboard:
             raise KeyboardInterrupt
         return key
 
-    def _read(self) -> bool:
-        """Wait for keys, of which what arrows and function keys arrive as is passed over; whether any came."""
-        try:
-            arrived = os.read(self._terminal, 64)
-        except OSError:  # the terminal is gone
-            return False
-        self._pressed += SEQUENCES.sub(b"", arrived).decode("utf-8", errors="replace")
-        return bool(arrived)
+    def _read(self, *, wait: bool = True) -> bool:
+        """Whether somebody is still there to press keys."""
+        arrived = self._keys.arrived(wait=wait)
+        self._pressed += (arrived or b"").decode("utf-8", errors="replace")
+        return arrived is not None

@@ -85,7 +85,7 @@ def play_out(
     ended, complete = "broken off", False
     with progress(quiet=options.quiet or options.events, single=True) as show:
         try:
-            with controls(by_pipe=options.events) as wishes:
+            with controls(by_program=options.events) as wishes:
                 if trajectory.pen_changes and not options.fast and not wishes.has_keys:
                     raise UsageError(
                         f"it needs {counted(len(trajectory.pens), 'pen')}, and somebody at a terminal to change them:"

@@ -10,6 +10,7 @@ import importlib.util
 import multiprocessing.resource_tracker
 import os
 import signal
+import sys
 import threading
 import time
 from collections import deque
@@ -143,18 +144,18 @@ def _processes(count: int, prepare: Callable[[], None] | None) -> Iterator[Execu
 def _interrupts_held() -> Iterator[None]:
     """Ctrl-C waits until this is over, and processes and threads started in here never see it: one that it met
     half-way through its start would leave its parent waiting."""
-    if not hasattr(signal, "pthread_sigmask"):
+    if sys.platform == "win32":  # has no such signals to hold
         yield
-        return
-    from loky.backend import resource_tracker
+    else:
+        from loky.backend import resource_tracker
 
-    resource_tracker.ensure_running()  # the start of either would let interrupts through again
-    multiprocessing.resource_tracker.ensure_running()
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        resource_tracker.ensure_running()  # the start of either would let interrupts through again
+        multiprocessing.resource_tracker.ensure_running()
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _settle_in(parent: int, prepare: Callable[[], None] | None) -> None:

@@ -70,7 +70,7 @@ async def start(
         limit=_LONGEST_LINE,
         start_new_session=True,
     )
-    if behind and hasattr(os, "setpriority"):
+    if behind and sys.platform != "win32":
         with suppress(OSError):
             os.setpriority(os.PRIO_PROCESS, process.pid, _BEHIND)
     return Child(process)
