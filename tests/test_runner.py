@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from planner.runner.command import COMMANDS, main
 from planner.cli import main as plan
+from planner.runner.command import COMMANDS, main
 from tests.drawn_shapes import lines_svg
 
 ROOT = Path(__file__).resolve().parents[1]

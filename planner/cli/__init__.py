@@ -117,6 +117,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.predict import predict
 
             return predict(rest)
+        case "mcp":
+            from planner.cli.mcp import mcp
+
+            return mcp(rest)
         case "serve":
             from planner.cli.serve import serve
 

@@ -140,7 +140,7 @@ def plan_parser() -> Parser:
     parser = Parser("plan", _DESCRIPTION, _EPILOG)
     parser.usage = (
         "plan DRAWING.svg [-o traj.csv] [options]\n"
-        "       plan batch|lines|run|pattern|measure|calibrate|predict|jog|ports|check|serve ...\n"
+        "       plan batch|lines|run|pattern|measure|calibrate|predict|jog|ports|check|serve|mcp ...\n"
         "       plan plot|compare|fonts|arm|paper|estimate|config ..."
     )
     parser.add_argument(

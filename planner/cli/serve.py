@@ -46,7 +46,7 @@ def serve(arguments: list[str]) -> int:
     alone = _is_loopback(options.host)
     token = None if alone and not options.token else options.token or secrets.token_urlsafe(_TOKEN_BYTES)
     names = frozenset({"localhost", options.host.lower(), socket.gethostname().lower()})
-    house = House(options.folder or _folder(), SIMULATORS if options.demo else DRIVERS)
+    house = House(options.folder or default_folder(), SIMULATORS if options.demo else DRIVERS)
     listening = _listening(options.host, options.port)
     port = listening.getsockname()[1]
     host = f"[{options.host}]" if ":" in options.host else options.host
@@ -87,7 +87,8 @@ def _listening(host: str, port: int) -> socket.socket:
     return listening
 
 
-def _folder() -> Path:
+def default_folder() -> Path:
+    """Where drawings of this user are kept, by the rule of the platform."""
     import platformdirs
 
     return platformdirs.user_data_path(DISTRIBUTION, appauthor=False) / "page"

@@ -76,10 +76,22 @@ async def start(
     return Child(process)
 
 
-async def follow(child: Child, told: Told) -> int:
-    """Hands on what the command tells until it is over; its exit code."""
-    await asyncio.gather(_events(child, told), _notes(child))
+async def listen(child: Child, heard: Callable[[str], None]) -> int:
+    """Hands on the lines that the command prints until it is over; its exit code."""
+    await asyncio.gather(_printed(child, heard), _notes(child))
     return await child.process.wait()
+
+
+async def follow(child: Child, told: Told) -> int:
+    """The same with what it tells as events."""
+
+    def heard(line: str) -> None:
+        with suppress(ValueError):
+            event = json.loads(line)
+            if isinstance(event, dict):
+                told(event)
+
+    return await listen(child, heard)
 
 
 async def finished(
@@ -99,13 +111,9 @@ def error_of(child: Child, code: int) -> str:
     return errors[-1] if errors else child.notes[-1] if child.notes else f"it ended with exit code {code}"
 
 
-async def _events(child: Child, told: Told) -> None:
-    reader = child.process.stdout
-    while reader is not None and (line := await reader.readline()):
-        with suppress(ValueError):
-            event = json.loads(line)
-            if isinstance(event, dict):
-                told(event)
+async def _printed(child: Child, heard: Callable[[str], None]) -> None:
+    while child.process.stdout is not None and (line := await child.process.stdout.readline()):
+        heard(line.decode(errors="replace").rstrip())
 
 
 async def _notes(child: Child) -> None:

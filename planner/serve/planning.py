@@ -61,8 +61,9 @@ class Planning:
             async with self._turn:
                 await work
         except asyncio.CancelledError:
-            job.state = State.READ if (self._store.of(job) / LINES).exists() else State.FAILED
-            job.error = "cancelled"
+            if self._tasks.get(job.id) is asyncio.current_task():  # else the next work on it has begun
+                job.state = State.READ if (self._store.of(job) / LINES).exists() else State.FAILED
+                job.error = "cancelled"
             raise
         finally:
             work.close()

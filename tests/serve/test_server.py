@@ -144,6 +144,14 @@ def test_cancelled_plans_leave_the_drawing(server: Server) -> None:
     assert server.settled(job["id"])["state"] == "read"
 
 
+def test_a_plan_takes_the_place_of_the_one_before(server: Server) -> None:
+    job = server.upload()
+    for rotate in (1, 2, 3):
+        server.post(f"/api/jobs/{job['id']}/plan", {"rotate": rotate})
+    settled = server.settled(job["id"])
+    assert settled["state"] == "planned" and "--rotate=3" in settled["command"]
+
+
 def test_a_server_that_is_killed_leaves_an_arm_that_parks_and_a_run_that_goes_on(tmp_path: Path) -> None:
     with Server(tmp_path) as first:
         job = first.planned()

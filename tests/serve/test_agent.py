@@ -1,0 +1,87 @@
+"""What an agent can do, by a client of the protocol over real pipes."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import pty
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mcp import ClientSession, StdioServerParameters, stdio_client
+
+from tests.serve.served import SQUARE
+
+
+async def call(session: ClientSession, tool: str, **asked: object) -> Any:
+    return await session.call_tool(tool, dict(asked))
+
+
+def text(answer: Any) -> str:
+    return "\n".join(part.text for part in answer.content if part.type == "text")
+
+
+async def _draws(folder: Path) -> None:
+    server = StdioServerParameters(command=sys.executable, args=["-m", "planner", "mcp", "--folder", str(folder)])
+    async with stdio_client(server) as (read, write), ClientSession(read, write) as session:
+        await session.initialize()
+        assert {tool.name for tool in (await session.list_tools()).tools} == {
+            "arms", "plan", "picture", "check", "run", "status", "stop",
+        }  # fmt: skip
+        assert "so101" in text(await call(session, "arms"))
+
+        planned = json.loads(text(await call(session, "plan", svg=SQUARE.decode(), options={"rotate": 5})))
+        assert "--rotate=5" in planned["command"] and planned["summary"]
+        job = planned["job"]
+        (picture,) = (await call(session, "picture", job=job)).content
+        assert picture.type == "image" and picture.mime_type == "image/png" and len(picture.data) > 10_000
+        assert text(await call(session, "check", job=job)).startswith("passed")
+
+        await call(session, "run", job=job)
+        while json.loads(text(run := await call(session, "status")))["stand"] != "idle":
+            await asyncio.sleep(0.1)
+        assert json.loads(text(run))["complete"]
+
+        for tool, asked, word in (
+            ("plan", {"svg": "<svg"}, "drawing.svg"),
+            ("plan", {"svg": SQUARE.decode(), "options": {"font": "/etc/passwd"}}, "font"),
+            ("plan", {"svg": SQUARE.decode(), "name": "x.sh"}, "x.sh"),
+            ("check", {"job": "../.."}, "no job"),
+            ("run", {"job": job, "driver": "maestro", "port": "/dev/ttyACM0"}, "simulated"),
+            ("stop", {}, "nothing"),
+        ):
+            refused = await call(session, tool, **asked)
+            assert refused.is_error and word in text(refused), (tool, refused)
+
+
+def test_an_agent_plans_looks_checks_and_runs_on_the_simulated_arm_alone(tmp_path: Path) -> None:
+    asyncio.run(asyncio.wait_for(_draws(tmp_path), 240))
+
+
+AGREES = """
+import asyncio, sys
+from planner.serve.person import agrees
+sys.exit(0 if asyncio.run(agrees("draw it")) else 1)
+"""
+
+
+@pytest.mark.parametrize(("typed", "agreed"), [(b"y\n", True), (b"no\n", False), (b"\n", False)])
+def test_a_person_at_the_terminal_has_to_agree(typed: bytes, agreed: bool) -> None:
+    process, terminal = pty.fork()
+    if process == 0:
+        os.execv(sys.executable, [sys.executable, "-c", AGREES])
+    said = b""
+    while b"type y" not in said:
+        said += os.read(terminal, 1000)
+    os.write(terminal, typed)
+    assert (os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]) == 0) is agreed
+    os.close(terminal)
+
+
+def test_nobody_agrees_where_there_is_no_terminal() -> None:
+    ran = subprocess.run([sys.executable, "-c", AGREES], start_new_session=True, stdin=subprocess.DEVNULL)
+    assert ran.returncode == 1
