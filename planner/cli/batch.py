@@ -12,8 +12,7 @@ from planner.cli.interrupts import interrupts_remembered
 from planner.cli.parser import Parser
 from planner.cli.plan_options import add_plan_options, preferred, settings_of
 from planner.cli.terminal import print_lines, print_note, print_warnings, progress
-from planner.counted import counted
-from planner.summary import clock
+from planner.counted import clock, counted
 
 if TYPE_CHECKING:
     from planner.batch import Job, Outcome

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -83,18 +84,20 @@ def plan(arguments: list[str]) -> int:
     if options.report:
         check_report(options.report, drawing, target)
     settings = settings_of(options)
-
-    from planner.pipeline import plan as plan_drawing
-    from planner.trajectory import write_trajectory
+    last = "report" if options.report else "writing"
 
     with (
-        told_progress() if options.events else progress(quiet=options.quiet, single=True) as show,
+        told_progress() if options.events else progress(quiet=options.quiet) as show,
         interrupts_remembered() as raise_if_interrupted,
     ):
 
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
-            show(stage, *of_all_stages(stage, done, total))
+            show(stage, *of_all_stages(stage, done, total, last))
+
+        report("reading", 0, 1)
+        from planner.pipeline import plan as plan_drawing
+        from planner.trajectory import write_trajectory
 
         planned = plan_drawing(drawing, settings, report, options.workers)
         raise_if_interrupted()
@@ -102,12 +105,12 @@ def plan(arguments: list[str]) -> int:
         if options.split and planned.by_pen:
             made = {_of_pen(target, index, part): part for index, part in enumerate(planned.by_pen, 1)}
         for file, trajectory in made.items():
+            report("writing", 0, 1)
             check_target(file, drawing)
             write_trajectory(trajectory, file)
         written = list(made)
         if options.report:
-            report("report", 0, 1)
-            written.append(write_report_of(planned, settings, arguments, options.report))
+            written.append(write_report_of(planned, settings, arguments, options.report, partial(report, "report")))
     print_warnings(planned.summary.warnings)
     if options.events:
         tell_summary(planned.summary.lines(), map(str, written))

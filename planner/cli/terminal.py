@@ -68,12 +68,12 @@ def _print_aside(line: str) -> None:
 
 
 @contextmanager
-def progress(*, quiet: bool, single: bool = False) -> Iterator[Report]:
-    """Bars while standard error is a terminal, else nothing. single: as of `bars`."""
+def progress(*, quiet: bool, paced: bool = True) -> Iterator[Report]:
+    """A bar while standard error is a terminal, else nothing. paced: as of `bars`."""
     if quiet or sys.stderr is None or not sys.stderr.isatty():
         yield lambda label, done, total: None
         return
-    with bars(single=single) as show:
+    with bars(paced=paced) as show:
         yield show
 
 
