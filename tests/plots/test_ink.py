@@ -12,7 +12,7 @@ from planner.checking.chain import chain_poses
 from planner.drawing.source import SvgInMemory
 from planner.pens import GroupBy
 from planner.pipeline import Plan, plan
-from planner.plots.ink import plot_sheet
+from planner.plots.inked_sheet import plot_sheet
 from planner.plots.look import Look
 from planner.progress import unreported
 from planner.settings import PlanSettings
