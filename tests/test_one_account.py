@@ -53,7 +53,7 @@ def test_lengths_speeds_and_times_are_the_same_everywhere(tmp_path: Path, capsys
     assert len(inks) == 3 and sum(inks) == pytest.approx(float(drawn.removesuffix(" m")), abs=0.016)
 
     page = Reader((report / "index.html").read_text(encoding="utf-8")).text
-    facts = {term: page[place + 1] for place, term in enumerate(page[:-1])}
+    facts = {term: page[place + 1] for place, term in reversed([*enumerate(page[:-1])])}  # where it comes first
     assert (facts["takes"], facts["drawn"], facts["travelled, pen up"]) == (takes[1], drawn, travelled)
     assert facts["mean speed on paper"] == speed[0].removesuffix(" on paper in the mean")
     assert facts["strokes"] == amount[0].split()[0]
