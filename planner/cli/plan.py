@@ -61,6 +61,9 @@ examples:
   plan letter.svg --text outline --font Lora.ttf   letters as the outlines of a font, not as single lines
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
   plan flower.svg --paper a6 --align top-left      at the top left of a sheet
+  plan map.svg --list-layers                       what there is to draw, with colours
+  plan map.svg --by colour --report map            a pen for each colour, with a halt to change it
+  plan logo.svg --fill hatch --preset fast         filled shapes hatched, with options of yours (plan config)
   plan stamp.svg --at 20 15 --copies 3x2           six of them at true size, the first 20 mm right and 15 mm down
 
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
@@ -164,7 +167,7 @@ def plan_parser() -> Parser:
         "--report",
         type=output_file,
         metavar="DIR",
-        help="write DIR/index.html too: a page with summary, pictures, tables and the result of the check",
+        help="write DIR/index.html too: a page with the sheet, where to lay it, time, pens, accuracy, film and check",
     )
     parser.add_argument("--list-layers", action="store_true", help="print the drawing's layers, and plan nothing")
     parser.add_argument(

@@ -27,9 +27,9 @@ Draw a trajectory, or play it in a film. Or, with --kind workspace and no trajec
 its paper.
 
 kinds:
-  sheet      the paper as it will look: ink in its colours, as wide as the pens draw
+  sheet      the paper as it will look: ink in its colours, as wide as the pens draw, with rulers
   profiles   position, velocity, acceleration and jerk of every joint, with their limits
-  drawing    what the pen draws, over what was to be drawn
+  drawing    the same on the paper before the arm, over what was to be drawn, with the way of the lifted pen
   speed      the pen's path with its speed as colour
   error      how far the pen is off the drawing, on the paper and along the way
   phase      the pen's speed along one stroke, under what the joints allow on that path
@@ -42,7 +42,7 @@ examples:
   plan plot traj.csv -o profiles.png
   plan plot traj.csv -o sheet.png --kind sheet
   plan plot traj.csv -o start.png --from 0 --to 2.5
-  plan plot traj.csv -o flower.svg --kind drawing --drawing flower.svg
+  plan plot traj.csv -o drawn.svg --kind drawing --drawing flower.svg
   plan plot traj.csv -o speed.pdf --kind speed --size paper
   plan plot traj.csv -o error.png --kind error --drawing flower.svg --tolerance 0.05mm
   plan plot traj.csv -o phase.png --kind phase --stroke 3
