@@ -80,6 +80,6 @@ def _expected(arm: Arm, trajectory: Trajectory) -> tuple[Prediction | None, str]
         expected = prediction_of(arm, part, Path(trajectory.drawing), seed=0)
     except PlannerError as error:
         return None, f"nobody can say: {error}"
-    by = f", by its first {clock(part.duration_s)}" if part is not trajectory else ""
+    by = f" (told by its first {clock(part.duration_s)})" if part is not trajectory else ""
     cure = f"; {expected.causes[0].text()}" if expected.causes else ""
     return expected, f"{expected.summary()}{by}{cure}"

@@ -49,9 +49,9 @@ def plot_drawing(
         axes = paper_panel(sheet, [xy, wanted_line], canvas_corners_mm, reach_mm)
         axes.add_patch(paper_patch(paper_sides_mm(trajectory, xy), colours))
         pt_per_mm = pt_per_mm_of(sheet, axes)
-        ink_pt = max(ink.width_mm for ink in inks) * pt_per_mm
-        _line(axes, wanted_line, "wanted", color=colours.wanted, linewidth=ink_pt + _HALO * look.letter_pt, zorder=2)
-        _dots(axes, wanted_taps, "tap wanted", color=colours.wanted, size=4.5, zorder=2)
+        halo_pt = max(ink.width_mm for ink in inks) * pt_per_mm + _HALO * look.letter_pt
+        _line(axes, wanted_line, "wanted", color=colours.wanted, linewidth=halo_pt, zorder=2)
+        _dots(axes, wanted_taps, "tap wanted", color=colours.wanted, size=halo_pt, zorder=2)
         _line(axes, travel_line, "travel, pen up", color=colours.travel, linewidth=0.35, zorder=2.5)
         draw_inks(axes, inks, pt_per_mm, zorder=3.0)
         legend = [*axes.get_legend_handles_labels()[0], *legend_of(inks, look)]
