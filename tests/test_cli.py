@@ -579,6 +579,22 @@ def test_progress_is_for_terminals(terminal: bool, quiet: bool, shows: bool, mon
     assert bool(stderr.getvalue()) is shows
 
 
+@pytest.mark.parametrize(
+    ("command", "doing"),
+    [("check {}", "checking"), ("plot {} -o {}.png --kind sheet", "drawing"), ("run {} --dry-run", "examining")],
+)
+def test_what_takes_long_is_said_from_the_first_moment_on(
+    command: str, doing: str, sweep_csv: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trajectory = tmp_path / "t.csv"
+    trajectory.write_bytes(sweep_csv.read_bytes())
+    monkeypatch.setenv("TERM", "xterm")
+    for quiet in (False, True):
+        monkeypatch.setattr(sys, "stderr", stderr := _Terminal())
+        assert main([*command.replace("{}", str(trajectory)).split(), *["--quiet"] * quiet]) < 2
+        assert (doing in stderr.getvalue()) is not quiet
+
+
 def _start(*arguments: str, stdout: Any = subprocess.PIPE) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-m", "planner.cli", *arguments], cwd=ROOT, text=True, stdout=stdout, stderr=subprocess.PIPE

@@ -63,4 +63,6 @@ def test_lengths_speeds_and_times_are_the_same_everywhere(tmp_path: Path, capsys
 
 def _texts(figure: Figure) -> list[str]:
     legends = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-    return [text.get_text() for holder in (figure, *figure.axes) for text in holder.texts] + legends
+    return [
+        text.get_text() for texts in (figure.texts, *(axes.texts for axes in figure.axes)) for text in texts
+    ] + legends

@@ -15,7 +15,7 @@ from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.plan_options import add_plan_options, preferred, settings_of
 from planner.cli.report import check_report, write_report_of
-from planner.cli.terminal import print_lines, print_summary, print_warnings, progress
+from planner.cli.terminal import print_lines, print_summary, print_warnings, progress, waiting
 from planner.errors import UsageError
 from planner.files import STANDARD
 from planner.progress import of_all_stages
@@ -78,7 +78,9 @@ def plan(arguments: list[str]) -> int:
     drawing: Path = options.drawing
     target: Path = options.output or (Path(STANDARD) if drawing == STANDARD_INPUT else Path(f"{drawing.stem}.csv"))
     if options.list_layers:
-        print_lines(_layers(drawing))
+        with waiting("reading", quiet=options.quiet):
+            found = _layers(drawing)
+        print_lines(found)
         return 0
     check_target(target, drawing)
     refuse_events_among_results(options, target)

@@ -10,7 +10,7 @@ from planner.cli.files import input_file, output_file
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import length_mm, number
-from planner.cli.terminal import progress
+from planner.cli.terminal import progress, waiting
 from planner.errors import UsageError
 from planner.pictures import PlotKind, figure_of, film_to_file, motion_for_film, workspace_figure
 from planner.settings import MIN_TOLERANCE_MM, PlanSettings
@@ -79,6 +79,7 @@ def plot(arguments: list[str]) -> int:
     check_target(target, *filter(None, (options.trajectory, options.drawing)))
 
     from planner.arms.arm_file import DEFAULT_ARM, load_arm
+    from planner.plots.figure_file import save_figure
     from planner.plots.look import Look, Size, Theme
     from planner.plots.samples import require_joints
     from planner.trajectory import read_trajectory
@@ -86,19 +87,18 @@ def plot(arguments: list[str]) -> int:
     look = Look.of(Theme(options.theme), Size(options.size), options.dpi or (_FILM_DPI if kind == "film" else None))
     _check_format(target, kind)
     if kind == _WITHOUT_TRAJECTORY:
-        figure = workspace_figure(load_arm(options.arm or DEFAULT_ARM), look)
-    else:
+        with waiting("drawing", quiet=options.quiet):
+            save_figure(workspace_figure(load_arm(options.arm or DEFAULT_ARM), look), target, look)
+        return 0
+    with waiting("reading", quiet=options.quiet):
         trajectory = read_trajectory(options.trajectory)
-        arm = load_arm(options.arm or trajectory.arm)
-        require_joints(trajectory, arm)
-        if kind == "film":
-            _film(trajectory, arm, options, look)
-            return 0
-        figure = _figure(trajectory, arm, kind, options, look)
-
-    from planner.plots.figure_file import save_figure
-
-    save_figure(figure, target, look)
+    arm = load_arm(options.arm or trajectory.arm)
+    require_joints(trajectory, arm)
+    if kind == "film":
+        _film(trajectory, arm, options, look)
+        return 0
+    with waiting("drawing", quiet=options.quiet):
+        save_figure(_figure(trajectory, arm, kind, options, look), target, look)
     return 0
 
 
@@ -142,6 +142,7 @@ def _parser() -> Parser:
     parser.add_argument(
         "--to", dest="to_s", type=number(), metavar="SECONDS", help="with --kind profiles, timeline or film: end there"
     )
+    parser.add_argument("--quiet", action="store_true", help="no progress")
     style = parser.add_argument_group("look")
     style.add_argument("--theme", choices=("light", "dark"), default="light", help="(default: %(default)s)")
     style.add_argument(
@@ -164,7 +165,6 @@ def _parser() -> Parser:
         help="times as fast as the arm (default: 1, or what makes it last 20 s)",
     )
     film.add_argument("--fps", type=number(minimum=1, maximum=50), metavar="N", help="pictures a second (default: 20)")
-    film.add_argument("--quiet", action="store_true", help="no progress")
     return parser
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from planner.cli.files import input_file, output_file
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
-from planner.cli.terminal import print_summary, progress
+from planner.cli.terminal import print_summary, waiting
 from planner.errors import UsageError
 
 if TYPE_CHECKING:
@@ -54,11 +54,9 @@ def predict(arguments: list[str]) -> int:
     from planner.arms.arm_file import load_arm
     from planner.trajectory import read_trajectory
 
-    with progress(quiet=False) as show:
-        show("reading", 0, 1)
+    with waiting("playing it many times", quiet=False):
         trajectory = read_trajectory(options.trajectory)
         arm = load_arm(options.arm or trajectory.arm)
-        show("playing it many times", 0, 1)
         figures = prediction_of(arm, trajectory, options.trajectory, options.seed)
     if options.plot:
         from planner.plots.expected import plot_expected

@@ -77,6 +77,14 @@ def progress(*, quiet: bool, paced: bool = True) -> Iterator[Report]:
         yield show
 
 
+@contextmanager
+def waiting(what: str, *, quiet: bool) -> Iterator[None]:
+    """Shows what takes so long, where nothing tells how far it is."""
+    with progress(quiet=quiet) as show:
+        show(what, 0, 1)
+        yield
+
+
 def _is_gone(stream: io.TextIOBase | object, error: OSError) -> bool:
     """Whether it is a terminal that somebody has closed."""
     return (
