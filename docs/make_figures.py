@@ -22,6 +22,7 @@ IMAGES = ROOT / "docs" / "images"
 GARDEN = ROOT / "examples" / "garden.svg"
 PLOTS = {
     "garden.png": ["traj.csv", "--kind", "drawing", "--drawing", str(GARDEN)],
+    "ink.png": ["traj.csv", "--kind", "sheet"],
     "speed.png": ["traj.csv", "--kind", "speed"],
     "error.png": ["traj.csv", "--kind", "error", "--drawing", str(GARDEN)],
     "phase.png": ["traj.csv", "--kind", "phase"],

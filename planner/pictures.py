@@ -57,7 +57,7 @@ def figure_of(
         return plot_profiles(trajectory, arm, look, from_s=from_s, to_s=to_s)
     tip_mm = _tip_mm(trajectory, arm)
     if kind is PlotKind.SHEET:
-        from planner.plots.ink import plot_sheet
+        from planner.plots.inked_sheet import plot_sheet
 
         return plot_sheet(trajectory, tip_mm, look)
     if kind is PlotKind.PHASE:
@@ -68,11 +68,14 @@ def figure_of(
         from planner.plots.timeline import plot_timeline
 
         return plot_timeline(trajectory, tip_mm, arm.pen.clearance_mm, look, from_s=from_s, to_s=to_s)
+    from planner.account import account_of
+
     canvas, reach_mm = _paper_of(arm)
+    account = account_of(trajectory, tip_mm, arm.pen.clearance_mm)
     if kind is PlotKind.SPEED:
         from planner.plots.coloured_path import plot_speed
 
-        return plot_speed(trajectory, tip_mm, canvas, reach_mm, look)
+        return plot_speed(trajectory, tip_mm, account, canvas, reach_mm, look)
     if kind is PlotKind.ERROR:
         from planner.checking.coverage import distance_from_drawing
         from planner.plots.coloured_path import plot_error
@@ -83,7 +86,7 @@ def figure_of(
         return plot_error(trajectory, tip_mm, error_mm, tolerance_mm, canvas, reach_mm, look)
     from planner.plots.drawing import plot_drawing
 
-    return plot_drawing(trajectory, tip_mm, drawing, canvas, reach_mm, look)
+    return plot_drawing(trajectory, tip_mm, account, drawing, canvas, reach_mm, look)
 
 
 def workspace_figure(arm: Arm, look: Look) -> Figure:

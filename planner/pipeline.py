@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import partial
-from itertools import chain, pairwise
+from itertools import chain
 
 import numpy as np
 
+from planner.account import account_of
 from planner.affine import scale_of
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
@@ -23,15 +24,12 @@ from planner.execution.context import PlanContext
 from planner.execution.workers import ALONE, ChunkExecutor, Workers, executor_of
 from planner.head import Chosen, LeftOut, PathWork
 from planner.motion.speed_limit import pen_speed_mm_s
-from planner.motion.timed_stroke import TimedStroke
 from planner.pen_drawing import PenDrawing, lift_mm, require_bounded_whole
-from planner.phases import phases_of
 from planner.placement.place import Placed, placed
 from planner.progress import Report, unreported
 from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
-from planner.stroke_figures import stroke_figures
-from planner.summary import PhaseTimes, PlanSummary
+from planner.summary import PlanSummary
 from planner.trajectory import TRAVELLING, Trajectory
 from planner.workspace.canvas import canvas_of
 
@@ -184,22 +182,12 @@ def _worth_hiring(workers: Workers, drawing_file: DrawingSource) -> Workers:
 
 def _summary(trajectory: Trajectory, model: ArmModel, drawings: Sequence[PenDrawing], place: Placed) -> PlanSummary:
     arm = model.arm
-    timed: list[TimedStroke] = list(chain.from_iterable(one.timed for one in drawings))
-    tips_mm = model.kinematics.tip_mm(arm.independent_of(arm.from_file_units(trajectory.positions)))
-    phases = PhaseTimes.of(phases_of(trajectory, tips_mm, arm.pen.clearance_mm), trajectory.rate_hz)
+    tip_mm = model.kinematics.tip_mm(arm.independent_of(arm.from_file_units(trajectory.positions)))
+    account = account_of(trajectory, tip_mm, arm.pen.clearance_mm)
     return PlanSummary(
-        n_strokes=len(timed),
-        n_taps=sum(len(stroke.joints) == 1 for stroke in timed),
-        drawn_mm=float(stroke_figures(trajectory, tips_mm).length_mm.sum()),
-        travelled_mm=float(
-            sum(np.hypot(*(after.first.tip_mm - before.last.tip_mm)) for before, after in pairwise(timed))
-        ),
+        **{one.name: getattr(account, one.name) for one in fields(account)},
         size_mm=place.size_mm,
         scale=place.scale,
-        phases=phases,
-        duration_s=trajectory.duration_s,
-        n_samples=trajectory.n_samples,
-        rate_hz=trajectory.rate_hz,
         warnings=_told(place.drawing, drawings),
         where=place.board.where(),
         hints=place.notes,

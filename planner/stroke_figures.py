@@ -6,9 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arrays import FloatArray, IntArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.phases import REST_MM_S
 from planner.trajectory import Trajectory
+
+TAP_EXTENT_MM = 0.02
+"""A stroke that stays within this is a dot."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -27,6 +30,12 @@ class StrokeFigures:
     drawing_s: FloatArray
     length_mm: FloatArray
     top_speed_mm_s: FloatArray
+
+    @property
+    def is_tap(self) -> BoolArray:
+        """Which strokes are dots."""
+        taps: BoolArray = self.length_mm <= TAP_EXTENT_MM
+        return taps
 
     @property
     def mean_speed_mm_s(self) -> FloatArray:

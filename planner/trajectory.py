@@ -144,6 +144,17 @@ class Trajectory:
             chosen=chosen,
         )
 
+    def opening(self, n_samples: int) -> Trajectory:
+        """The strokes that end within so many samples, and their moves; all of it where that is short, and one stroke
+        at the least."""
+        if self.n_samples <= n_samples or not self.pen.any():
+            return self
+        ends = np.flatnonzero(self.pen[:-1] & ~self.pen[1:])
+        in_time = ends[ends < n_samples]
+        last = int(in_time[-1] if len(in_time) else ends[0] if len(ends) else self.n_samples - 2) + 1
+        shown = slice(0, last + 1)
+        return replace(self, positions=self.positions[shown], pen=self.pen[shown], stroke=self.stroke[shown])
+
     @property
     def pen_of_stroke(self) -> IntArray:
         """(n_strokes,) which of the pens draws each stroke."""

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from planner.account import PhaseTimes
 from planner.cli import EXIT_DEFECT, main
 from planner.cli.plan import plan_parser
 from planner.cli.plan_options import settings_of
@@ -29,7 +30,7 @@ from planner.execution.workers import Workers
 from planner.paper_size import Orientation, paper_size
 from planner.pens import GroupBy, Pen
 from planner.settings import Anchor, CanvasKind, ConfigurationWeights, Method, PlaceKind, PlanSettings
-from planner.summary import PhaseTimes, PlanSummary
+from planner.summary import PlanSummary
 from planner.trajectory import Trajectory, read_trajectory, write_trajectory
 from tests.drawn_shapes import lines_svg
 
@@ -578,6 +579,22 @@ def test_progress_is_for_terminals(terminal: bool, quiet: bool, shows: bool, mon
     assert bool(stderr.getvalue()) is shows
 
 
+@pytest.mark.parametrize(
+    ("command", "doing"),
+    [("check {}", "checking"), ("plot {} -o {}.png --kind sheet", "drawing"), ("run {} --dry-run", "examining")],
+)
+def test_what_takes_long_is_said_from_the_first_moment_on(
+    command: str, doing: str, sweep_csv: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trajectory = tmp_path / "t.csv"
+    trajectory.write_bytes(sweep_csv.read_bytes())
+    monkeypatch.setenv("TERM", "xterm")
+    for quiet in (False, True):
+        monkeypatch.setattr(sys, "stderr", stderr := _Terminal())
+        assert main([*command.replace("{}", str(trajectory)).split(), *["--quiet"] * quiet]) < 2
+        assert (doing in stderr.getvalue()) is not quiet
+
+
 def _start(*arguments: str, stdout: Any = subprocess.PIPE) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-m", "planner.cli", *arguments], cwd=ROOT, text=True, stdout=stdout, stderr=subprocess.PIPE
@@ -676,6 +693,6 @@ def test_a_picture_is_no_drawing(
 @pytest.mark.parametrize(("count", "words"), [(0, "0 strokes"), (1, "1 stroke"), (2, "2 strokes")])
 def test_one_is_no_plural(count: int, words: str) -> None:
     assert counted(count, "stroke") == words
-    summary = PlanSummary(count, count, 10.0, 0.0, (1.0, 1.0), 1.0, PhaseTimes(1, 1, 1, 1, 1), 5.0, count, 100.0)
-    assert summary.lines()[0].startswith(words + ["", ", 1 of them a tap", ", 2 of them taps"][count] + ": ")
+    summary = PlanSummary(count, count, count, 10.0, 0.0, PhaseTimes(1, 1, 1, 1, 1), 5.0, count, 100.0)
+    assert summary.lines()[0].startswith(words + ["", ", 1 of them a tap", ", 2 of them taps"][count] + ", ")
     assert summary.lines()[-1] == f"{counted(count, 'sample')} at 100 Hz"

@@ -16,7 +16,7 @@ from planner.cli import main
 from tests.drawn_shapes import lines_svg
 
 PAGE = 'viewBox="0 0 60 60" width="60mm" height="60mm"'
-STAGES = ["reading", "placing", "joining", "ordering strokes", "drawing motions", "travels"]
+STAGES = ["reading", "placing", "joining", "ordering strokes", "drawing motions", "travels", "writing"]
 
 
 @pytest.fixture(scope="module")

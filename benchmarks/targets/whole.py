@@ -12,6 +12,7 @@ import numpy as np
 from benchmarks.targets.row import Row
 from benchmarks.targets.strokes import TimedPaths, drawings, length_mm, lines, placed_strokes, timed_in_chunks
 from planner import pipeline
+from planner.account import PhaseTimes
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
@@ -23,7 +24,6 @@ from planner.kinematics.limits import Limits
 from planner.motion.speed_limit import pen_speed_mm_s
 from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
-from planner.summary import PhaseTimes
 from planner.travel.ruckig_profile import rest_to_rest
 
 _SAMPLES_PER_CELL = 20

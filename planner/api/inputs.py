@@ -72,7 +72,7 @@ def shown(progress: Progress, *, stages_of_a_plan: bool = False) -> Iterator[Rep
     if callable(progress):
         yield progress
     elif progress is True:
-        with bars(single=stages_of_a_plan) as show:
+        with bars() as show:
             if stages_of_a_plan:
                 yield lambda stage, done, total: show(stage, *of_all_stages(stage, done, total))
             else:

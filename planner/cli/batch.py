@@ -12,8 +12,7 @@ from planner.cli.interrupts import interrupts_remembered
 from planner.cli.parser import Parser
 from planner.cli.plan_options import add_plan_options, preferred, settings_of
 from planner.cli.terminal import print_lines, print_note, print_warnings, progress
-from planner.counted import counted
-from planner.summary import clock
+from planner.counted import clock, counted, metres
 
 if TYPE_CHECKING:
     from planner.batch import Job, Outcome
@@ -97,15 +96,15 @@ def _exit_code(outcome: Outcome) -> int:
 def _table(outcomes: Sequence[Outcome]) -> list[str]:
     """Aligned columns, a drawing a line, and how many there are."""
     width = max(len("drawing"), *(len(outcome.job.drawing.name) for outcome in outcomes))
-    lines = [f"{'drawing':<{width}}  strokes  drawn m  takes s  trajectory"]
+    lines = [f"{'drawing':<{width}}  strokes  {'drawn':>9}  {'takes':>12}  trajectory"]
     for outcome in outcomes:
         name, summary = outcome.job.drawing.name, outcome.summary
         if summary is None:
-            lines.append(f"{name:<{width}}  {'-':>7}  {'-':>7}  {'-':>7}  none")
+            lines.append(f"{name:<{width}}  {'-':>7}  {'-':>9}  {'-':>12}  none")
         else:
             lines.append(
-                f"{name:<{width}}  {summary.n_strokes:>7}  {summary.drawn_mm / 1000:>7.2f}"
-                f"  {summary.duration_s:>7.1f}  {outcome.job.target or '-'}"
+                f"{name:<{width}}  {summary.n_strokes:>7}  {metres(summary.drawn_mm):>9}"
+                f"  {clock(summary.duration_s):>12}  {outcome.job.target or '-'}"
             )
     planned = sum(outcome.summary is not None for outcome in outcomes)
     whole = clock(sum(outcome.summary.duration_s for outcome in outcomes if outcome.summary is not None))

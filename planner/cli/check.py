@@ -9,7 +9,7 @@ from planner.cli.files import input_file, output_file
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import length_mm
-from planner.cli.terminal import print_summary
+from planner.cli.terminal import print_summary, waiting
 from planner.settings import MIN_TOLERANCE_MM, PlanSettings
 
 _DESCRIPTION = """\
@@ -62,10 +62,12 @@ def check(arguments: list[str]) -> int:
     from planner.files import written_aside
     from planner.trajectory import read_trajectory
 
-    trajectory = read_trajectory(options.trajectory)
-    arm = load_arm(options.arm or trajectory.arm)
-    drawing = read_drawing(options.drawing, options=trajectory.reading) if options.drawing else None
-    check_result = check_trajectory(trajectory, arm, drawing, options.tolerance)
+    with waiting("reading", quiet=options.quiet):
+        trajectory = read_trajectory(options.trajectory)
+        arm = load_arm(options.arm or trajectory.arm)
+        drawing = read_drawing(options.drawing, options=trajectory.reading) if options.drawing else None
+    with waiting("checking", quiet=options.quiet):
+        check_result = check_trajectory(trajectory, arm, drawing, options.tolerance)
     if options.json:
         with written_aside(options.json) as file:
             cast("IO[str]", file).write(json.dumps(check_result.as_dict(), indent=2) + "\n")

@@ -10,7 +10,7 @@ from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import length_mm
 from planner.cli.reading import add_reading_options, reading_of
-from planner.cli.terminal import print_summary, print_warnings
+from planner.cli.terminal import print_summary, print_warnings, waiting
 from planner.counted import counted
 from planner.errors import UsageError
 
@@ -50,12 +50,14 @@ def lines(arguments: list[str]) -> int:
     from planner.drawing.svg import read_drawing
     from planner.files import written_aside
 
-    drawing = read_drawing(options.drawing, options=reading)
-    found = plain_lines(drawing, options.tolerance)
-    for target, written in ((options.output, as_svg), (options.json, as_json)):
-        if target is not None:
-            with written_aside(target) as file:
-                cast("IO[str]", file).write(written(drawing, found))
+    with waiting("reading", quiet=options.quiet):
+        drawing = read_drawing(options.drawing, options=reading)
+        found = plain_lines(drawing, options.tolerance)
+    with waiting("writing", quiet=options.quiet):
+        for target, written in ((options.output, as_svg), (options.json, as_json)):
+            if target is not None:
+                with written_aside(target) as file:
+                    cast("IO[str]", file).write(written(drawing, found))
     print_warnings(drawing.notes())
     if not options.quiet:
         n_taps = sum(len(line.points_mm) == 1 for line in found)

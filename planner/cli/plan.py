@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.plan_options import add_plan_options, preferred, settings_of
 from planner.cli.report import check_report, write_report_of
-from planner.cli.terminal import print_lines, print_summary, print_warnings, progress
+from planner.cli.terminal import print_lines, print_summary, print_warnings, progress, waiting
 from planner.errors import UsageError
 from planner.files import STANDARD
 from planner.progress import of_all_stages
@@ -60,6 +61,9 @@ examples:
   plan letter.svg --text outline --font Lora.ttf   letters as the outlines of a font, not as single lines
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
   plan flower.svg --paper a6 --align top-left      at the top left of a sheet
+  plan map.svg --list-layers                       what there is to draw, with colours
+  plan map.svg --by colour --report map            a pen for each colour, with a halt to change it
+  plan logo.svg --fill hatch --preset fast         filled shapes hatched, with options of yours (plan config)
   plan stamp.svg --at 20 15 --copies 3x2           six of them at true size, the first 20 mm right and 15 mm down
 
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
@@ -74,7 +78,9 @@ def plan(arguments: list[str]) -> int:
     drawing: Path = options.drawing
     target: Path = options.output or (Path(STANDARD) if drawing == STANDARD_INPUT else Path(f"{drawing.stem}.csv"))
     if options.list_layers:
-        print_lines(_layers(drawing))
+        with waiting("reading", quiet=options.quiet):
+            found = _layers(drawing)
+        print_lines(found)
         return 0
     check_target(target, drawing)
     refuse_events_among_results(options, target)
@@ -83,18 +89,20 @@ def plan(arguments: list[str]) -> int:
     if options.report:
         check_report(options.report, drawing, target)
     settings = settings_of(options)
-
-    from planner.pipeline import plan as plan_drawing
-    from planner.trajectory import write_trajectory
+    last = "report" if options.report else "writing"
 
     with (
-        told_progress() if options.events else progress(quiet=options.quiet, single=True) as show,
+        told_progress() if options.events else progress(quiet=options.quiet) as show,
         interrupts_remembered() as raise_if_interrupted,
     ):
 
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
-            show(stage, *of_all_stages(stage, done, total))
+            show(stage, *of_all_stages(stage, done, total, last))
+
+        report("reading", 0, 1)
+        from planner.pipeline import plan as plan_drawing
+        from planner.trajectory import write_trajectory
 
         planned = plan_drawing(drawing, settings, report, options.workers)
         raise_if_interrupted()
@@ -102,12 +110,12 @@ def plan(arguments: list[str]) -> int:
         if options.split and planned.by_pen:
             made = {_of_pen(target, index, part): part for index, part in enumerate(planned.by_pen, 1)}
         for file, trajectory in made.items():
+            report("writing", 0, 1)
             check_target(file, drawing)
             write_trajectory(trajectory, file)
         written = list(made)
         if options.report:
-            report("report", 0, 1)
-            written.append(write_report_of(planned, settings, arguments, options.report))
+            written.append(write_report_of(planned, settings, arguments, options.report, partial(report, "report")))
     print_warnings(planned.summary.warnings)
     if options.events:
         tell_summary(planned.summary.lines(), map(str, written))
@@ -161,7 +169,7 @@ def plan_parser() -> Parser:
         "--report",
         type=output_file,
         metavar="DIR",
-        help="write DIR/index.html too: a page with summary, pictures, tables and the result of the check",
+        help="write DIR/index.html too: a page with the sheet, where to lay it, time, pens, accuracy, film and check",
     )
     parser.add_argument("--list-layers", action="store_true", help="print the drawing's layers, and plan nothing")
     parser.add_argument(

@@ -10,7 +10,7 @@ from planner.cli.files import input_file, output_file
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import length_mm, number
-from planner.cli.terminal import progress
+from planner.cli.terminal import progress, waiting
 from planner.errors import UsageError
 from planner.pictures import PlotKind, figure_of, film_to_file, motion_for_film, workspace_figure
 from planner.settings import MIN_TOLERANCE_MM, PlanSettings
@@ -27,9 +27,9 @@ Draw a trajectory, or play it in a film. Or, with --kind workspace and no trajec
 its paper.
 
 kinds:
-  sheet      the paper as it will look: ink in its colours, as wide as the pens draw
+  sheet      the paper as it will look: ink in its colours, as wide as the pens draw, with rulers
   profiles   position, velocity, acceleration and jerk of every joint, with their limits
-  drawing    what the pen draws, over what was to be drawn
+  drawing    the same on the paper before the arm, over what was to be drawn, with the way of the lifted pen
   speed      the pen's path with its speed as colour
   error      how far the pen is off the drawing, on the paper and along the way
   phase      the pen's speed along one stroke, under what the joints allow on that path
@@ -42,7 +42,7 @@ examples:
   plan plot traj.csv -o profiles.png
   plan plot traj.csv -o sheet.png --kind sheet
   plan plot traj.csv -o start.png --from 0 --to 2.5
-  plan plot traj.csv -o flower.svg --kind drawing --drawing flower.svg
+  plan plot traj.csv -o drawn.svg --kind drawing --drawing flower.svg
   plan plot traj.csv -o speed.pdf --kind speed --size paper
   plan plot traj.csv -o error.png --kind error --drawing flower.svg --tolerance 0.05mm
   plan plot traj.csv -o phase.png --kind phase --stroke 3
@@ -79,6 +79,7 @@ def plot(arguments: list[str]) -> int:
     check_target(target, *filter(None, (options.trajectory, options.drawing)))
 
     from planner.arms.arm_file import DEFAULT_ARM, load_arm
+    from planner.plots.figure_file import save_figure
     from planner.plots.look import Look, Size, Theme
     from planner.plots.samples import require_joints
     from planner.trajectory import read_trajectory
@@ -86,19 +87,18 @@ def plot(arguments: list[str]) -> int:
     look = Look.of(Theme(options.theme), Size(options.size), options.dpi or (_FILM_DPI if kind == "film" else None))
     _check_format(target, kind)
     if kind == _WITHOUT_TRAJECTORY:
-        figure = workspace_figure(load_arm(options.arm or DEFAULT_ARM), look)
-    else:
+        with waiting("drawing", quiet=options.quiet):
+            save_figure(workspace_figure(load_arm(options.arm or DEFAULT_ARM), look), target, look)
+        return 0
+    with waiting("reading", quiet=options.quiet):
         trajectory = read_trajectory(options.trajectory)
-        arm = load_arm(options.arm or trajectory.arm)
-        require_joints(trajectory, arm)
-        if kind == "film":
-            _film(trajectory, arm, options, look)
-            return 0
-        figure = _figure(trajectory, arm, kind, options, look)
-
-    from planner.plots.figure_file import save_figure
-
-    save_figure(figure, target, look)
+    arm = load_arm(options.arm or trajectory.arm)
+    require_joints(trajectory, arm)
+    if kind == "film":
+        _film(trajectory, arm, options, look)
+        return 0
+    with waiting("drawing", quiet=options.quiet):
+        save_figure(_figure(trajectory, arm, kind, options, look), target, look)
     return 0
 
 
@@ -142,6 +142,7 @@ def _parser() -> Parser:
     parser.add_argument(
         "--to", dest="to_s", type=number(), metavar="SECONDS", help="with --kind profiles, timeline or film: end there"
     )
+    parser.add_argument("--quiet", action="store_true", help="no progress")
     style = parser.add_argument_group("look")
     style.add_argument("--theme", choices=("light", "dark"), default="light", help="(default: %(default)s)")
     style.add_argument(
@@ -164,7 +165,6 @@ def _parser() -> Parser:
         help="times as fast as the arm (default: 1, or what makes it last 20 s)",
     )
     film.add_argument("--fps", type=number(minimum=1, maximum=50), metavar="N", help="pictures a second (default: 20)")
-    film.add_argument("--quiet", action="store_true", help="no progress")
     return parser
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from planner.cli.files import input_file, output_file
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
-from planner.cli.terminal import print_summary
+from planner.cli.terminal import print_summary, waiting
 from planner.errors import UsageError
 
 if TYPE_CHECKING:
@@ -54,9 +54,10 @@ def predict(arguments: list[str]) -> int:
     from planner.arms.arm_file import load_arm
     from planner.trajectory import read_trajectory
 
-    trajectory = read_trajectory(options.trajectory)
-    arm = load_arm(options.arm or trajectory.arm)
-    figures = prediction_of(arm, trajectory, options.trajectory, options.seed)
+    with waiting("playing it many times", quiet=False):
+        trajectory = read_trajectory(options.trajectory)
+        arm = load_arm(options.arm or trajectory.arm)
+        figures = prediction_of(arm, trajectory, options.trajectory, options.seed)
     if options.plot:
         from planner.plots.expected import plot_expected
         from planner.plots.figure_file import save_figure

@@ -6,7 +6,7 @@ from contextlib import closing, nullcontext
 
 from planner.cli.output import check_target
 from planner.cli.run_options import parser, refuse_contradictions
-from planner.cli.terminal import print_lines, print_summary
+from planner.cli.terminal import print_lines, print_summary, waiting
 
 EXIT_STOPPED = 130
 
@@ -34,7 +34,8 @@ def run(arguments: list[str]) -> int:
         check_target(options.film, options.trajectory)
     if options.resume:
         refuse_unkept(options.trajectory)
-    job = examine(options)
+    with waiting("examining", quiet=options.quiet or options.events):
+        job = examine(options)
     true_arm = true_arm_of(options, job.arm)
     rig = set_up(options, job.arm, true_arm)
     if options.frame:
@@ -49,9 +50,10 @@ def run(arguments: list[str]) -> int:
         if (options.resume and beginning.complete) or (all_drawn and options.driver in SIMULATORS):
             print_lines([f"{options.trajectory} is drawn to its end; without --resume it is drawn again"])
             return 0
-        program = job.parking() if all_drawn else job.program(beginning)
-        compensated = job.compensated(program)
-        commanded = job.commanded(compensated)
+        with waiting("getting ready", quiet=options.quiet or options.events):
+            program = job.parking() if all_drawn else job.program(beginning)
+            compensated = job.compensated(program)
+            commanded = job.commanded(compensated)
         if options.record and job.calibration is not None:
             write_record(job.arm, compensated, job.calibration, options.record)
         if options.driver not in SIMULATORS or options.servos == "real":  # others have no slack
@@ -63,7 +65,8 @@ def run(arguments: list[str]) -> int:
     lines = result.lines()
     if rig.recording is not None and options.picture:
         positions = rig.recording().positions
-        lines += save_pictures(options.picture, job, true_arm, positions, beginning.next_stroke)
+        with waiting("drawing", quiet=options.quiet or options.events):
+            lines += save_pictures(options.picture, job, true_arm, positions, beginning.next_stroke)
     if options.events:
         tell_ended(result.end.value, lines, complete=result.complete, parked=result.parked)
     elif not options.quiet:

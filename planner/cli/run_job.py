@@ -15,6 +15,7 @@ from hardware.playback.program import Program, make_program, parking
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
+from planner.counted import clock
 from planner.errors import HardwareError, UsageError
 from planner.trajectory import PATTERN, Trajectory, read_trajectory
 
@@ -93,8 +94,8 @@ def dry_run_lines(options: argparse.Namespace, job: Job, program: Program, comma
     approach_s, retreat_s = program.approach / program.rate_hz, program.retreat / program.rate_hz
     lines = [
         f"{options.trajectory} can be played on arm '{job.arm.name}' by driver {options.driver}",
-        f"it takes {program.duration_s:.2f} s: {approach_s:.2f} s to the drawing, "
-        f"{program.duration_s - approach_s - retreat_s:.2f} s for it, and {retreat_s:.2f} s back",
+        f"it takes {clock(program.duration_s)}: {clock(approach_s)} to the drawing, "
+        f"{clock(program.duration_s - approach_s - retreat_s)} for it, and {clock(retreat_s)} back",
         f"park pose: {in_words(job.arm, program.park)}",
     ]
     if job.trajectory.pens:

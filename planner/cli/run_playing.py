@@ -30,7 +30,7 @@ from planner.cli.terminal import print_note, print_warnings, progress
 from planner.counted import counted
 from planner.error_model.random_arm import random_arm
 from planner.errors import HardwareError, UsageError
-from planner.progress import Report
+from planner.progress import Report, left
 from planner.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def play_out(
     last_stroke = int(trajectory.stroke.max())
     journal = RunJournal(options, beginning, last_stroke, rig.driver, program.rate_hz, rig.clock)
     ended, complete = "broken off", False
-    with progress(quiet=options.quiet or options.events, single=True) as show:
+    with progress(quiet=options.quiet or options.events, paced=False) as show:
         try:
             with controls(by_program=options.events) as wishes:
                 if trajectory.pen_changes and not options.fast and not wishes.has_keys:
@@ -193,5 +193,5 @@ class _Display(Observer):
         if self._calls % self._every and progress.reached < progress.total:
             return
         doing = f"stroke {progress.stroke} of 0..{self._last_stroke}" if progress.stroke >= 0 else "travelling"
-        state = f"{'paused' if progress.paused else doing}, {progress.left_s:.0f} s left"
+        state = f"{'paused' if progress.paused else doing}, {left(progress.left_s)}"
         self._show("\n".join((state, *self._driver.statistics())), progress.reached, progress.total)

@@ -68,13 +68,21 @@ def _print_aside(line: str) -> None:
 
 
 @contextmanager
-def progress(*, quiet: bool, single: bool = False) -> Iterator[Report]:
-    """Bars while standard error is a terminal, else nothing. single: as of `bars`."""
+def progress(*, quiet: bool, paced: bool = True) -> Iterator[Report]:
+    """A bar while standard error is a terminal, else nothing. paced: as of `bars`."""
     if quiet or sys.stderr is None or not sys.stderr.isatty():
         yield lambda label, done, total: None
         return
-    with bars(single=single) as show:
+    with bars(paced=paced) as show:
         yield show
+
+
+@contextmanager
+def waiting(what: str, *, quiet: bool) -> Iterator[None]:
+    """Shows what takes so long, where nothing tells how far it is."""
+    with progress(quiet=quiet) as show:
+        show(what, 0, 1)
+        yield
 
 
 def _is_gone(stream: io.TextIOBase | object, error: OSError) -> bool:

@@ -9,6 +9,7 @@ from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from planner.account import Account
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import UsageError
 from planner.plots.look import LIMIT_DASHES, USUAL, Look
@@ -28,13 +29,14 @@ _BELOW, _BELOW_BOTTOM, _BELOW_GAP = 11.0, 4.0, 2.0  # em, of the panel below the
 def plot_speed(
     trajectory: Trajectory,
     tip_mm: FloatArray,
+    account: Account,
     canvas_corners_mm: FloatArray | None = None,
     reach_mm: tuple[float, float] | None = None,
     look: Look = USUAL,
 ) -> Figure:
     """Each line from sample to sample in the colour of the pen's mean speed along it, in mm/s.
 
-    tip_mm: (n_samples, 2 or more). canvas_corners_mm, reach_mm: as for `plot_drawing`.
+    tip_mm: (n_samples, 2 or more). account: of the trajectory. canvas_corners_mm, reach_mm: as for `plot_drawing`.
     Errors: UsageError where the pen draws no line.
     """
     xy = np.asarray(tip_mm, dtype=np.float64)[:, :2]
@@ -42,7 +44,6 @@ def plot_speed(
     step_mm = np.linalg.norm(np.diff(xy, axis=0), axis=1)
     speed = step_mm * trajectory.rate_hz
     fastest = int(np.argmax(np.where(drawn, speed, -1.0)))
-    mean = float(step_mm[drawn].sum()) / np.count_nonzero(drawn) * trajectory.rate_hz
     with look.style():
         sheet = Sheet(look)
         axes = paper_panel(
@@ -54,7 +55,7 @@ def plot_speed(
         )
         colour_lines(sheet, axes, xy, drawn, speed, float(speed[fastest]), "speed of the pen (mm/s)")
         remark = (
-            f"{mean:.1f} mm/s on the paper in the mean, at most {speed[fastest]:.1f} mm/s "
+            f"{account.mean_speed()}, at most {speed[fastest]:.1f} mm/s "
             f"({fastest / trajectory.rate_hz:.2f} s, stroke {trajectory.stroke[fastest]}); on {trajectory.arm}"
         )
         return sheet.finish(trajectory.drawing or "trajectory", remark, axes.get_legend_handles_labels()[0])

@@ -12,6 +12,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from planner.arrays import BoolArray, FloatArray
+from planner.counted import clock
+from planner.plots.ink import Ink, inks_of, legend_of
 from planner.plots.look import USUAL, Colours, Look
 from planner.plots.motion import Motion, seen_from_the_side
 from planner.plots.paper import (
@@ -20,6 +22,8 @@ from planner.plots.paper import (
     PAPER_RIGHT,
     canvas_outline,
     half_ring,
+    paper_patch,
+    paper_sides_mm,
     pieces,
     place_axes,
     round_step,
@@ -48,6 +52,7 @@ class Film:
         look: Look = USUAL,
     ) -> None:
         self.motion, self.look = motion, look
+        self._pen_of_stroke = motion.trajectory.pen_of_stroke
         with look.style():
             self._lay_out(canvas_corners_mm, reach_mm, look)
 
@@ -78,6 +83,7 @@ class Film:
             above.add_patch(half_ring(reach_mm, colours))
         if len(corners):
             above.add_patch(canvas_outline(corners, colours))
+        above.add_patch(paper_patch(paper_sides_mm(motion.trajectory, motion.tip_mm[:, :2]), colours))
         beside.set(
             xlim=(side_low[0], side_high[0]),
             ylim=(side_low[1], side_high[1]),
@@ -89,16 +95,14 @@ class Film:
         beside.yaxis.set_major_locator(MultipleLocator(tick_mm))
         beside.axhline(0.0, color=colours.edge, linewidth=0.8, zorder=0)
 
-        (self._line,) = above.plot([], [], color=colours.drawn, linewidth=0.9, zorder=3, animated=True, label="drawn")
-        (self._dots,) = above.plot(
-            [], [], color=colours.drawn, linestyle="none", marker="o", markeredgewidth=0, markersize=0.9, animated=True
-        )
+        inks = inks_of(motion.trajectory, motion.tip_mm[:, :2])
+        self._inks = [_ink_on(above, ink, em_per_mm * look.letter_pt) for ink in inks]
         self._above, self._views = above, tuple((axes, *_arm_on(axes, colours)) for axes in (above, beside))
         speed = "" if motion.speed_factor == 1 else f", {motion.speed_factor:.3g} times as fast"
         self.figure = sheet.finish(
             motion.trajectory.drawing or "trajectory",
             f"{motion.arm.name} draws, from above and square to the arm{speed}",
-            [*self._views[0][1:], self._line],
+            [*self._views[0][1:], *legend_of(inks, look)],
         )
         self._clock = self.figure.text(
             1 - 1.6 / sheet.width,
@@ -114,6 +118,11 @@ class Film:
     @property
     def n_frames(self) -> int:
         return len(self.motion.times_s)
+
+    @property
+    def ink_colours(self) -> list[str]:
+        """Of the pens, each once."""
+        return list(dict.fromkeys(str(line.get_color()) for line, _ in self._inks))
 
     def frames(self) -> Iterator[Frame]:
         """Each frame in turn, all of one size."""
@@ -138,10 +147,16 @@ class Film:
 
     def _add_to_drawing(self, begin: int, end: int, joined: BoolArray) -> None:
         xy = self.motion.tip_mm[begin : end + 1, :2]
-        touched = xy[self.motion.trajectory.pen[begin : end + 1]]  # a tap has no line, but has a dot
-        for artist, points in ((self._line, pieces(xy, joined[begin:end])), (self._dots, touched)):
-            artist.set_data(points[:, 1], points[:, 0])
-            self._above.draw_artist(artist)
+        down = self.motion.trajectory.pen[begin : end + 1]
+        stroke = self.motion.trajectory.stroke[begin : end + 1]
+        pen = np.where(down, self._pen_of_stroke[np.maximum(stroke, 0)], -1) if len(self._pen_of_stroke) else stroke
+        for index in np.unique(pen[down]).tolist():
+            line, dots = self._inks[index]
+            own = pen == index
+            drawn = pieces(xy, joined[begin:end] & own[1:])  # a tap has no line, but has a dot
+            for artist, points in ((line, drawn), (dots, xy[own])):
+                artist.set_data(points[:, 1], points[:, 0])
+                self._above.draw_artist(artist)
 
     def _place_arm(self, nodes_mm: FloatArray, time_s: float, stroke: int) -> None:
         seen = (nodes_mm[0, :, 1::-1], seen_from_the_side(nodes_mm)[0])
@@ -151,10 +166,20 @@ class Film:
             axes.draw_artist(links)
             axes.draw_artist(tip)
         self._clock.set_text(
-            f"{time_s:.2f} s of {self.motion.trajectory.duration_s:.2f} s, "
+            f"{clock(time_s)} of {clock(self.motion.trajectory.duration_s)}, "
             + (f"stroke {stroke}" if stroke >= 0 else "pen up")
         )
         self.figure.draw_artist(self._clock)
+
+
+def _ink_on(axes: Axes, ink: Ink, pt_per_mm: float) -> tuple[Line2D, Line2D]:
+    """A line and dots in a pen's colour and width, yet to be placed."""
+    width_pt = ink.width_mm * pt_per_mm
+    (line,) = axes.plot([], [], color=ink.colour, linewidth=width_pt, zorder=3, animated=True)
+    (dots,) = axes.plot(
+        [], [], color=ink.colour, linestyle="none", marker="o", markeredgewidth=0, markersize=width_pt, animated=True
+    )
+    return line, dots
 
 
 def _arm_on(axes: Axes, colours: Colours) -> tuple[Line2D, Line2D]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import chain
 from pathlib import Path
@@ -26,6 +26,7 @@ from planner.progress import Report, unreported
 
 FORMATS = ("html", "gif", "mp4")
 _MOST_GIF_FRAMES = 6000  # all of a GIF's frames are in memory before it is written
+_PALETTE = 256
 _SHADES = 9  # from a ground to a colour on it, for the edges of lines
 
 
@@ -75,7 +76,7 @@ def save_film(
     with look.style(), written_aside(target, binary=True) as file:
         frames = _shown(film, report)
         if kind == "gif":
-            _write_gif(frames, motion.fps, _palette(look.colours), cast("IO[bytes]", file))
+            _write_gif(frames, motion.fps, _palette(look.colours, film.ink_colours), cast("IO[bytes]", file))
         else:
             _write_mp4(frames, motion.fps, cast("IO[bytes]", file), target)
 
@@ -86,17 +87,17 @@ def _shown(film: Film, report: Report) -> Iterator[Frame]:
         yield frame
 
 
-def _palette(colours: Colours) -> Image.Image:
-    """Every colour of a film on every ground, and the shades between."""
-    grounds, inks = (
+def _palette(colours: Colours, inks: Sequence[str]) -> Image.Image:
+    """Every colour of a film on every ground, and the shades between: as many as a palette holds."""
+    drawn_with = (colours.ink, colours.quiet, colours.edge, colours.ring_edge, colours.limit, colours.link, *inks)
+    grounds, lines = (
         np.array([to_rgb(colour) for colour in chosen])
-        for chosen in (
-            (colours.surface, colours.ring),
-            (colours.ink, colours.quiet, colours.edge, colours.ring_edge, colours.drawn, colours.limit, colours.link),
-        )
+        for chosen in ((colours.surface, colours.ring, colours.paper), drawn_with)
     )
-    share = np.linspace(0, 1, _SHADES)[:, np.newaxis]
-    shades = [(1 - share) * ground + share * ink for ground in grounds for ink in inks]
+    n_shades = min(max(_PALETTE // (len(grounds) * len(lines)), 2), _SHADES)
+    lines = lines[: _PALETTE // (len(grounds) * n_shades)]
+    share = np.linspace(0, 1, n_shades)[:, np.newaxis]
+    shades = [(1 - share) * ground + share * line for ground in grounds for line in lines]
     palette = Image.new("P", (1, 1))
     palette.putpalette(np.rint(255 * np.concatenate(shades)).astype(np.uint8).tobytes())
     return palette

@@ -1,109 +1,124 @@
-"""The sheet as it will look: ink in its colours and as wide as the pens draw, on paper with rulers along its edges."""
+"""The ink that each pen leaves: in its colour, and as wide as it draws."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Rectangle
-from matplotlib.ticker import MultipleLocator
+from matplotlib.patches import Patch
 
 from planner.arrays import FloatArray, IntArray
-from planner.counted import counted
+from planner.counted import metres
 from planner.pens import hex_of
-from planner.plots.look import USUAL, Look
-from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, round_step
-from planner.plots.samples import TAP_EXTENT_MM, joined_while_drawing
-from planner.plots.sheet import Sheet
+from planner.plots.look import Look
+from planner.plots.samples import joined_while_drawing
+from planner.stroke_figures import TAP_EXTENT_MM, stroke_figures
 from planner.trajectory import TRAVELLING, Trajectory
 
-_USUAL_WIDTH_MM = 0.4
+USUAL_WIDTH_MM = 0.4
 """Of a pen whose width nobody said: a fineliner's."""
-_MARGIN_MM = 5.0
-_PAPER, _EDGE = "#FFFEFA", "#B9B4A6"
-_PT_PER_IN = 72.0
-_TICK_EM = 5.0
+_UNNAMED_COLOUR = "#1A1A1A"
+_CELL_MM = 2.0
+_APART = 0.5
+"""How much of the distance between lines a line fills at most, where its width is not known."""
+_THINNED_DOT = 2.0
+"""How wide a dot is beside such a line, for it to be seen."""
+_MANY_POINTS = 20_000  # beyond, lines are pixels in SVG and PDF too
 
 
-def plot_sheet(trajectory: Trajectory, tip_mm: FloatArray, look: Look = USUAL) -> Figure:
-    """What will be on the paper, seen from behind the arm; mm from the left and the near edge of the paper.
+@dataclass(frozen=True, eq=False, slots=True)
+class Ink:
+    """What one pen draws. name: "" where nobody speaks of pens. lines: (n, 2) each, taps: (k, 2) where it only touches
+    the paper, in the coordinates of the places that they are made of. drawn_mm: of both. is_thinned: shown thinner than
+    a usual pen draws, so that lines can be told apart."""
 
-    tip_mm: (n_samples, 2 or more) x, y of the tip. The paper is what the header tells, or else what the ink needs.
-    """
-    xy = np.asarray(tip_mm, dtype=np.float64)[:, :2]
-    near, far, right, left = _paper(trajectory, xy)
-    across, up = left - xy[:, 1], xy[:, 0] - near  # arm y grows to the left
-    width_mm, height_mm = left - right, far - near
-    with look.style():
-        sheet = Sheet(look)
-        width_em = sheet.width - PAPER_LEFT - PAPER_RIGHT
-        mm_per_em = (width_mm + 2 * _MARGIN_MM) / width_em
-        height_em = (height_mm + 2 * _MARGIN_MM) / mm_per_em
-        axes = sheet.panel(PAPER_LEFT, PAPER_BOTTOM, width_em, height_em)
-        axes.set_xlim(-_MARGIN_MM, width_mm + _MARGIN_MM)
-        axes.set_ylim(-_MARGIN_MM, height_mm + _MARGIN_MM)
-        axes.set_aspect("equal", adjustable="box")
-        axes.add_patch(
-            Rectangle((0, 0), width_mm, height_mm, facecolor=_PAPER, edgecolor=_EDGE, linewidth=0.8, zorder=0)
-        )
-        tick_mm = round_step((width_mm + 2 * _MARGIN_MM) / max(width_em / _TICK_EM, 3.5))
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_locator(MultipleLocator(tick_mm))
-            axis.set_minor_locator(MultipleLocator(tick_mm / 5))
-        axes.set_xlabel("from the left edge (mm)")
-        axes.set_ylabel("from the near edge (mm)")
-        pt_per_mm = look.em_in * _PT_PER_IN / mm_per_em
-        places = np.column_stack((across, up))
-        legend = []
-        for name, colour, pen_mm, drawn in _pens(trajectory):
-            lines, taps = _lines_and_taps(trajectory, places, drawn)
-            ink = LineCollection(lines, color=colour, linewidth=pen_mm * pt_per_mm, capstyle="round", zorder=2)
-            axes.add_collection(ink)
-            sizes = np.full(len(taps), pen_mm)
-            dots = EllipseCollection(sizes, sizes, 0.0, units="xy", offsets=taps, offset_transform=axes.transData)
-            dots.set(facecolor=colour, edgecolor="none", zorder=2)
-            axes.add_collection(dots)
-            if name:
-                legend.append(Line2D([], [], color=colour, linewidth=3.0, label=name))
-        n_strokes = int(trajectory.stroke.max(initial=-1)) + 1
-        remark = f"{counted(n_strokes, 'stroke')} on {width_mm:.0f} x {height_mm:.0f} mm, as seen from behind the arm"
-        return sheet.finish(trajectory.drawing or "trajectory", remark, legend)
+    name: str
+    colour: str
+    width_mm: float
+    lines: Sequence[FloatArray]
+    taps: FloatArray
+    drawn_mm: float
+    is_thinned: bool
+
+    @property
+    def label(self) -> str:
+        """For a legend."""
+        return f"{self.name}, {metres(self.drawn_mm)}" if self.name else "drawn"
 
 
-def _paper(trajectory: Trajectory, xy: FloatArray) -> tuple[float, float, float, float]:
-    """Near, far, right and left side."""
-    if trajectory.placement.canvas_mm is not None:
-        return trajectory.placement.canvas_mm
-    ink = xy[trajectory.pen] if trajectory.pen.any() else xy
-    (near, right), (far, left) = ink.min(axis=0) - _MARGIN_MM, ink.max(axis=0) + _MARGIN_MM
-    return float(near), float(far), float(right), float(left)
-
-
-def _pens(trajectory: Trajectory) -> list[tuple[str, str, float, IntArray]]:
-    """Name, colour, width in mm, and the strokes of each pen."""
-    which = trajectory.pen_of_stroke
-    if not trajectory.pens:
-        return [("", "#1A1A1A", _USUAL_WIDTH_MM, np.arange(len(which)))]
+def inks_of(trajectory: Trajectory, places: FloatArray) -> list[Ink]:
+    """The ink of each pen, in their order. places: (n_samples, 2) of the tip, mm."""
+    which, usual_mm = trajectory.pen_of_stroke, usual_width_mm(trajectory, places)
+    strokes = stroke_figures(trajectory, places)
+    pens = [(pen.name, hex_of(pen.colour), pen.width_mm) for pen in trajectory.pens] or [("", _UNNAMED_COLOUR, 0.0)]
     return [
-        (
-            pen.name,
-            hex_of(pen.colour),
-            pen.width_mm or _USUAL_WIDTH_MM,
-            np.flatnonzero(which == index),
+        Ink(
+            name,
+            colour,
+            width_mm or usual_mm,
+            *_lines_and_taps(trajectory, places, np.flatnonzero(which == index)),
+            drawn_mm=float(strokes.length_mm[which[strokes.index] == index].sum()),
+            is_thinned=not width_mm and usual_mm < USUAL_WIDTH_MM,
         )
-        for index, pen in enumerate(trajectory.pens)
+        for index, (name, colour, width_mm) in enumerate(pens)
     ]
 
 
+def thinned(inks: Sequence[Ink]) -> str:
+    """What is to be said of lines that are shown thinner than a pen draws them, or nothing."""
+    widths = [ink.width_mm for ink in inks if ink.is_thinned]
+    if not widths:
+        return ""
+    return f"; lines {widths[0]:.2f} mm wide, to tell them apart: a pen of {USUAL_WIDTH_MM:g} mm fills the gaps"
+
+
+def usual_width_mm(trajectory: Trajectory, places: FloatArray) -> float:
+    """How wide lines are shown whose width nobody said: as a usual pen draws them, or half as wide as they lie apart
+    where half of their length lies closer than that, so that a dense drawing shows its tones."""
+    steps_mm = np.linalg.norm(np.diff(places, axis=0), axis=1)[joined_while_drawing(trajectory)]
+    if not len(steps_mm):
+        return USUAL_WIDTH_MM
+    ends = places[1:][joined_while_drawing(trajectory)]
+    cells = np.floor((ends - ends.min(axis=0)) / _CELL_MM).astype(np.int64)
+    cell = np.unique(cells[:, 0] * (cells[:, 1].max() + 1) + cells[:, 1], return_inverse=True)[1]
+    length_mm = np.bincount(cell, weights=steps_mm)
+    apart_mm = _CELL_MM**2 / np.maximum(length_mm, 1e-9)
+    closest = np.argsort(apart_mm)
+    half = np.searchsorted(np.cumsum(length_mm[closest]), length_mm.sum() / 2)
+    return min(USUAL_WIDTH_MM, _APART * float(apart_mm[closest][min(int(half), len(closest) - 1)]))
+
+
+def draw_inks(axes: Axes, inks: Sequence[Ink], pt_per_mm: float, zorder: float = 2.0) -> None:
+    """Lines and taps at their true width on axes of equal scales."""
+    for ink in inks:
+        many = sum(map(len, ink.lines)) > _MANY_POINTS
+        lines = LineCollection(ink.lines, color=ink.colour, linewidth=ink.width_mm * pt_per_mm, capstyle="round")
+        lines.set(zorder=zorder, rasterized=many)
+        axes.add_collection(lines, autolim=False)
+        sizes = np.full(len(ink.taps), _THINNED_DOT * ink.width_mm if ink.is_thinned else ink.width_mm)
+        dots = EllipseCollection(sizes, sizes, 0.0, units="xy", offsets=ink.taps, offset_transform=axes.transData)
+        dots.set(facecolor=ink.colour, edgecolor="none", zorder=zorder)
+        axes.add_collection(dots, autolim=False)
+
+
+def legend_of(inks: Sequence[Ink], look: Look) -> list[Artist]:
+    """A patch for each pen, with an edge, as ink may have the colour of the ground."""
+    return [Patch(facecolor=ink.colour, edgecolor=look.colours.edge, linewidth=0.6, label=ink.label) for ink in inks]
+
+
 def _lines_and_taps(trajectory: Trajectory, places: FloatArray, drawn: IntArray) -> tuple[list[FloatArray], FloatArray]:
-    """The strokes of one pen: lines (n, 2), and the places (k, 2) where it only touches the paper."""
+    """The strokes of one pen."""
     stroke = trajectory.stroke
     is_own = (stroke != TRAVELLING) & np.isin(stroke, drawn)
     joined = joined_while_drawing(trajectory)
     begins = np.flatnonzero(is_own & ~np.concatenate(([False], joined)))
     ends = np.flatnonzero(is_own & ~np.concatenate((joined, [False])))
     pieces = [places[begin : end + 1] for begin, end in zip(begins.tolist(), ends.tolist(), strict=True)]
-    lines = [piece for piece in pieces if np.ptp(piece, axis=0).max() > TAP_EXTENT_MM]
-    taps = [piece[0] for piece in pieces if np.ptp(piece, axis=0).max() <= TAP_EXTENT_MM]
+    is_line = [float(np.ptp(piece, axis=0).max()) > TAP_EXTENT_MM for piece in pieces]
+    lines = [piece for piece, line in zip(pieces, is_line, strict=True) if line]
+    taps = [piece[0] for piece, line in zip(pieces, is_line, strict=True) if not line]
     return lines, np.reshape(taps, (-1, 2))

@@ -35,6 +35,7 @@ class Size(StrEnum):
 @dataclass(frozen=True, slots=True)
 class Colours:
     """What has which colour. surface: the ground of it all. ink, quiet: letters, and what is said in passing.
+    paper: what is drawn on, which is light in any theme.
     scale: the part of viridis that stands out from the ground."""
 
     surface: str
@@ -43,6 +44,8 @@ class Colours:
     edge: str
     ring: str
     ring_edge: str
+    paper: str
+    paper_edge: str
     drawn: str
     limit: str
     wanted: str
@@ -65,6 +68,8 @@ _COLOURS = {
         edge="#777777",
         ring="#F1F1EE",
         ring_edge="#B5B5AE",
+        paper="#FFFEFA",
+        paper_edge="#B9B4A6",
         drawn="#0072B2",
         limit="#D55E00",
         wanted="#F2C66D",
@@ -82,6 +87,8 @@ _COLOURS = {
         edge="#83898D",
         ring="#20262A",
         ring_edge="#4B5358",
+        paper="#FFFEFA",
+        paper_edge="#B9B4A6",
         drawn="#56B4E9",
         limit="#F08A3C",
         wanted="#5E4A16",

@@ -61,10 +61,11 @@ class Motion:
             [_nodes(self.arm, joints[first : first + _BLOCK]) for first in range(0, len(joints), _BLOCK)]
         )
 
-    def pen_lines(self) -> tuple[IntArray, IntArray]:
+    def pen_lines(self, most: int) -> tuple[IntArray, IntArray]:
         """Samples that tell what the pen draws until the end of this part, and which begin a line, both (k,).
 
-        Those between, less than a twentieth of a millimetre further on, are left out. A tap is a line of one sample.
+        Those between, less than a twentieth of a millimetre further on, are left out, or less than what leaves some
+        `most` of them. A tap is a line of one sample.
         """
         trajectory = self.trajectory
         (last,) = self.last_samples(np.array([self.end_s]))
@@ -73,7 +74,8 @@ class Motion:
         begins[1:] = (np.diff(down) > 1) | (np.diff(trajectory.stroke[down]) != 0)
         finishes = np.append(begins[1:], True)[: len(down)]
         steps_mm = np.linalg.norm(np.diff(self.tip_mm[down, :2], axis=0, prepend=self.tip_mm[down[:1], :2]), axis=1)
-        cell = np.floor(np.cumsum(steps_mm) / _CELL_MM)
+        way_mm = np.cumsum(steps_mm)
+        cell = np.floor(way_mm / max(_CELL_MM, float(way_mm[-1]) / most if len(way_mm) else 0.0))
         kept = begins | finishes | (np.diff(cell, prepend=-1.0) > 0)
         return down[kept], begins[kept].astype(np.int64)
 

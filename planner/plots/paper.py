@@ -8,16 +8,18 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Polygon, Wedge
+from matplotlib.patches import Polygon, Rectangle, Wedge
 from matplotlib.ticker import MultipleLocator
 
 from planner.arrays import BoolArray, FloatArray
 from planner.plots.look import Colours
 from planner.plots.sheet import Sheet
+from planner.trajectory import Trajectory
 
 PAPER_LEFT, PAPER_BOTTOM, PAPER_RIGHT = 5.4, 4.2, 1.8
 """Em around the axes of a paper, for the numbers on them."""
 BASE = "base of the arm"
+_MARGIN_MM = 5.0
 _TICK_EM = 5.5  # a label such as -120, with room beside it
 
 
@@ -119,6 +121,38 @@ def canvas_outline(
         linewidth=0.7,
         zorder=1,
         label="canvas",
+    )
+
+
+def pt_per_mm_of(sheet: Sheet, axes: Axes) -> float:
+    """Points to a millimetre on axes of that sheet, across."""
+    width_em = sheet.width_of(axes)
+    across = axes.get_xlim()
+    return width_em * sheet.look.letter_pt / abs(across[1] - across[0])
+
+
+def paper_sides_mm(trajectory: Trajectory, xy: FloatArray) -> tuple[float, float, float, float]:
+    """Near, far, right and left side of the paper: what the header tells, or else what the ink needs. xy: (n_samples,
+    2) of the tip."""
+    if trajectory.placement.canvas_mm is not None:
+        return trajectory.placement.canvas_mm
+    ink = xy[trajectory.pen] if trajectory.pen.any() else xy
+    (near, right), (far, left) = ink.min(axis=0) - _MARGIN_MM, ink.max(axis=0) + _MARGIN_MM
+    return float(near), float(far), float(right), float(left)
+
+
+def paper_patch(sides_mm: tuple[float, float, float, float], colours: Colours) -> Rectangle:
+    """The paper from its sides, in arm coordinates."""
+    near, far, right, left = sides_mm
+    return Rectangle(
+        (right, near),
+        left - right,
+        far - near,
+        facecolor=colours.paper,
+        edgecolor=colours.paper_edge,
+        linewidth=0.8,
+        zorder=1.1,
+        label="paper",
     )
 
 

@@ -14,28 +14,37 @@ import numpy as np
 import numpy.typing as npt
 
 from planner.arrays import FloatArray
+from planner.plots.ink import inks_of
 from planner.plots.look import USUAL, Look
 from planner.plots.motion import Motion, seen_from_the_side
-from planner.plots.paper import view_mm
+from planner.plots.paper import paper_sides_mm, view_mm
 
-_MOST_POSES = 20_000
+_MOST = 20_000
+_POINTS_A_POSE = 5
 _LARGEST = 32_000  # of a 16 bit number
 
 
 def film_of(
-    motion: Motion, canvas_corners_mm: FloatArray | None = None, reach_mm: tuple[float, float] | None = None
+    motion: Motion,
+    canvas_corners_mm: FloatArray | None = None,
+    reach_mm: tuple[float, float] | None = None,
+    *,
+    most: int = _MOST,
 ) -> dict[str, Any]:
-    """The motion for a player, as plain values for JSON. Of a long motion it holds some twenty thousand configurations,
-    between which the arm moves evenly; what the pen draws it holds to a twentieth of a millimetre."""
+    """The motion for a player, as plain values for JSON. Of a long motion it holds some `most` configurations, between
+    which the arm moves evenly; what the pen draws it holds to a twentieth of a millimetre, or in five times as many
+    points, and two a stroke."""
     trajectory = motion.trajectory
-    n_poses = int(np.clip((motion.end_s - motion.begin_s) * trajectory.rate_hz + 1, 2, _MOST_POSES))
+    n_poses = int(np.clip((motion.end_s - motion.begin_s) * trajectory.rate_hz + 1, 2, most))
     nodes_mm = motion.nodes_mm(np.linspace(motion.begin_s, motion.end_s, n_poses))
     side = seen_from_the_side(nodes_mm)
-    samples, begins = motion.pen_lines()
+    samples, begins = motion.pen_lines(_POINTS_A_POSE * most)
+    inks = inks_of(trajectory, motion.tip_mm[:, :2])
     corners = np.empty((0, 2)) if canvas_corners_mm is None else canvas_corners_mm
     low, high = view_mm([nodes_mm[..., :2].reshape(-1, 2), motion.tip_mm[:, :2], corners], reach_mm)
     margin_mm = 0.04 * float((high - low).max())
     scale_mm = max(float(np.abs(nodes_mm).max()), float(np.abs(motion.tip_mm).max()), 1.0) / _LARGEST
+    near, far, right, left = paper_sides_mm(trajectory, motion.tip_mm[:, :2])
     return {
         "name": trajectory.drawing or "trajectory",
         "arm": motion.arm.name,
@@ -49,6 +58,9 @@ def film_of(
         "line": _numbers(motion.tip_mm[samples, :2] / scale_mm, "<i2"),
         "samples": _numbers(samples, "<u4"),
         "begins": _numbers(begins, "u1"),
+        "pen": _numbers(trajectory.pen_of_stroke[trajectory.stroke[samples]], "<u2"),
+        "inks": [[ink.colour, ink.width_mm] for ink in inks],
+        "paper": [[near, right], [far, right], [far, left], [near, left]],
         "reach": reach_mm,
         "canvas": corners.tolist(),
         "above": [*low.tolist(), *high.tolist()],
@@ -66,26 +78,27 @@ def player_page(
     canvas_corners_mm: FloatArray | None = None,
     reach_mm: tuple[float, float] | None = None,
     look: Look = USUAL,
+    *,
+    dark: Look | None = None,
+    most: int = _MOST,
+    plays: bool = True,
 ) -> str:
-    """The page of one film."""
-    colours = look.colours
-    film = film_of(motion, canvas_corners_mm, reach_mm) | {
-        "colours": {
-            key: getattr(colours, key)
-            for key in ("surface", "ink", "quiet", "edge", "ring", "ring_edge", "drawn", "limit", "link")
-        }
+    """The page of one film. dark: the look where the reader's system is dark; None for the same. most: as of `film_of`.
+    plays: whether it begins by itself, or shows what is drawn and waits."""
+    film = film_of(motion, canvas_corners_mm, reach_mm, most=most) | {
+        "plays": plays,
+        "colours": [_colours_of(one) for one in (look, dark or look)],
     }
     template = files("planner.plots").joinpath("player.html").read_text(encoding="utf-8")
     # a name must not end the script that it stands in
-    return (
-        template.replace("$TITLE", html.escape(f"{film['name']} on {motion.arm.name}"))
-        .replace("$SURFACE", colours.surface)
-        .replace("$INK", colours.ink)
-        .replace("$QUIET", colours.quiet)
-        .replace("$EDGE", colours.edge)
-        .replace("$DRAWN", colours.drawn)
-        .replace("$FILM", json.dumps(film).replace("<", "\\u003c"))
+    return template.replace("$TITLE", html.escape(f"{film['name']} on {motion.arm.name}")).replace(
+        "$FILM", json.dumps(film).replace("<", "\\u003c")
     )
+
+
+def _colours_of(look: Look) -> dict[str, str]:
+    keys = ("surface", "ink", "quiet", "edge", "ring", "ring_edge", "paper", "paper_edge", "drawn", "limit", "link")
+    return {key: getattr(look.colours, key) for key in keys}
 
 
 def _numbers(values: npt.NDArray[np.generic], kind: str) -> str:

@@ -12,9 +12,6 @@ from planner.arrays import BoolArray, FloatArray
 from planner.errors import UsageError
 from planner.trajectory import Trajectory
 
-TAP_EXTENT_MM = 0.02
-"""A stroke that stays within this is a dot."""
-
 
 def require_joints(trajectory: Trajectory, arm: Arm) -> None:
     """Errors: UsageError where the trajectory's joints are not the arm's."""

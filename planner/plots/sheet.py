@@ -42,6 +42,10 @@ class Sheet:
         left, bottom, wide, high = dict(self._placed)[axes]
         return self.panel(left + wide + gap, bottom, width, high)
 
+    def width_of(self, axes: Axes) -> float:
+        """Of a panel, in em."""
+        return dict(self._placed)[axes][2]
+
     def finish(self, heading: str, remark: str, legend: Sequence[Artist] = (), room: float = 0.0) -> Figure:
         """The figure, with a line in bold, a remark, and the labels of the legend's artists in as many rows as they
         need. room: em left free above the highest panel."""

@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 
 from planner.arrays import FloatArray, IntArray
-from planner.counted import counted
+from planner.counted import clock, counted
 from planner.phases import Phase, phases_of, seconds_in
 from planner.plots.look import USUAL, Look
 from planner.plots.samples import min_max_envelope, spans_where, window_s
@@ -57,9 +57,9 @@ def plot_timeline(
         height.set_xlim(begin_s, max(last, first + 1) / trajectory.rate_hz)
         n_strokes = len(np.unique(trajectory.stroke[first : last + 1][trajectory.pen[first : last + 1]]))
         remark = (
-            f"{counted(n_strokes, 'stroke')} in {totals_s.sum():.4g} s"
+            f"{counted(n_strokes, 'stroke')} in {clock(float(totals_s.sum()))}"
             + (
-                f", {begin_s:g} to {last / trajectory.rate_hz:.6g} s of {trajectory.duration_s:.4g} s"
+                f", {begin_s:g} to {last / trajectory.rate_hz:.6g} s of {clock(trajectory.duration_s)}"
                 if last - first < trajectory.n_samples - 1
                 else ""
             )
@@ -108,7 +108,7 @@ def _draw_totals(axes: Axes, totals_s: FloatArray, look: Look) -> None:
     axes.barh(range(len(Phase)), totals_s, height=_BAR, color=[_colour(phase, look) for phase in Phase])
     for phase in Phase:
         axes.annotate(
-            f"{totals_s[phase]:.2f} s, {100 * totals_s[phase] / whole:.1f} %",
+            f"{clock(float(totals_s[phase]))}, {100 * totals_s[phase] / whole:.0f} %",
             (totals_s[phase], phase),
             xytext=(0.4 * look.letter_pt, 0),
             textcoords="offset points",

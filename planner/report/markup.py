@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from html import escape
 
 _VOID = frozenset({"br", "img", "meta", "source"})
@@ -63,5 +64,17 @@ def definitions(pairs: Iterable[tuple[str, str]], **attributes: str) -> Markup:
     )
 
 
-def section(heading: str, *children: str) -> Markup:
-    return element("section", element("h2", heading), *children)
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A part of the page behind a heading. name: that a link leads to it by."""
+
+    name: str
+    heading: str
+    body: Markup
+
+    def markup(self) -> Markup:
+        return element("section", element("h2", self.heading), self.body, id=self.name)
+
+    def link(self) -> Markup:
+        """To it, from elsewhere on the page."""
+        return element("a", self.heading, href=f"#{self.name}")

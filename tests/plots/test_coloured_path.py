@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
+from planner.account import account_of
 from planner.arrays import FloatArray
 from planner.errors import UsageError
 from planner.plots.coloured_path import N_LEVELS, plot_error, plot_speed
@@ -47,7 +48,7 @@ def coloured_steps(figure: Figure) -> dict[tuple[float, ...], int]:
 def test_the_colour_of_every_step_is_its_finite_difference(make_trajectory: MakeTrajectory) -> None:
     trajectory = make_trajectory()
     tip_mm = tip_path(trajectory)
-    figure = plot_speed(trajectory, tip_mm)
+    figure = plot_speed(trajectory, tip_mm, account_of(trajectory, tip_mm, 1.0))
     steps = coloured_steps(figure)
     drawn = [
         k
@@ -101,4 +102,4 @@ def test_a_trajectory_without_a_line_has_no_speed_to_show(make_trajectory: MakeT
     trajectory = make_trajectory()
     still = replace(trajectory, pen=np.zeros_like(trajectory.pen), stroke=np.full_like(trajectory.stroke, -1))
     with pytest.raises(UsageError, match="draws no line"):
-        plot_speed(still, tip_path(trajectory))
+        plot_speed(still, tip_path(trajectory), account_of(still, tip_path(trajectory), 1.0))

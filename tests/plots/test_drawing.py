@@ -7,7 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection, LineCollection
 
+from planner.account import Account, account_of
 from planner.arrays import FloatArray
 from planner.drawing.drawing import Drawing, Outline
 from planner.plots.drawing import plot_drawing
@@ -43,17 +45,31 @@ def straight(start: tuple[float, float], end: tuple[float, float]) -> Outline:
     return Outline((ends[0] + np.array([0, 1, 2, 3])[:, np.newaxis] / 3 * (ends[1] - ends[0]))[np.newaxis])
 
 
+def account(trajectory: Trajectory) -> Account:
+    return account_of(trajectory, tip_path(trajectory), 1.0)
+
+
+def inked(axes: Axes) -> list[FloatArray]:
+    (lines,) = (one for one in axes.collections if isinstance(one, LineCollection))
+    return [np.asarray(segment)[:, ::-1] for segment in lines.get_segments()]
+
+
+def taps(axes: Axes) -> FloatArray:
+    (dots,) = (one for one in axes.collections if isinstance(one, EllipseCollection))
+    return np.asarray(dots.get_offsets())[:, ::-1]
+
+
 def test_strokes_are_drawn_sample_by_sample_and_travels_join_them(make_trajectory: MakeTrajectory) -> None:
     trajectory = make_trajectory()
     tip_mm = tip_path(trajectory)
-    (axes,) = plot_drawing(trajectory, tip_mm).axes
-    drawn = pieces(line(axes, "drawn"))
+    (axes,) = plot_drawing(trajectory, tip_mm, account(trajectory)).axes
+    drawn = inked(axes)
     assert len(drawn) == 2
     for piece, stroke in zip(drawn, (0, 2), strict=True):
         np.testing.assert_array_equal(piece, tip_mm[trajectory.stroke == stroke, :2])
-    np.testing.assert_array_equal(line(axes, "tap"), tip_mm[trajectory.stroke == 1, :2])
+    np.testing.assert_array_equal(taps(axes), tip_mm[trajectory.stroke == 1, :2])
     # no step between samples is lost or told twice
-    steps = sum(len(piece) - 1 for label in ("drawn", "travel, pen up") for piece in pieces(line(axes, label)))
+    steps = sum(len(piece) - 1 for piece in drawn + pieces(line(axes, "travel, pen up")))
     assert steps == trajectory.n_samples - 1
 
 
@@ -61,15 +77,15 @@ def test_touching_strokes_stay_apart_where_the_pen_never_lifts(make_trajectory: 
     trajectory = make_trajectory(n_samples=10)
     trajectory.pen[:] = True
     trajectory.stroke[:] = [0] * 4 + [1] * 6
-    (axes,) = plot_drawing(trajectory, tip_path(trajectory)).axes
-    assert [len(piece) for piece in pieces(line(axes, "drawn"))] == [4, 6]
+    (axes,) = plot_drawing(trajectory, tip_path(trajectory), account(trajectory)).axes
+    assert [len(piece) for piece in inked(axes)] == [4, 6]
 
 
 def test_outlines_lie_where_the_trajectory_s_map_puts_them(make_trajectory: MakeTrajectory) -> None:
     outlines = (straight((0, 0), (30, 10)), straight((5, 50), (5, 50)))
     drawing = Drawing("flower.svg", outlines, np.eye(2, 3), (100.0, 100.0))
     trajectory = make_trajectory()  # x = 120 - v, y = 40 - u
-    (axes,) = plot_drawing(trajectory, tip_path(trajectory), drawing).axes
+    (axes,) = plot_drawing(trajectory, tip_path(trajectory), account(trajectory), drawing).axes
     np.testing.assert_allclose(pieces(line(axes, "wanted"))[0], [[120, 40], [110, 10]])
     np.testing.assert_allclose(line(axes, "tap wanted"), [[70, 35]])
 
@@ -77,7 +93,9 @@ def test_outlines_lie_where_the_trajectory_s_map_puts_them(make_trajectory: Make
 def test_the_drawing_reads_as_on_a_screen_for_who_sits_behind_the_base(make_trajectory: MakeTrajectory) -> None:
     """With the planner's map, SVG u to the right and v down are right and down in the picture."""
     drawing = Drawing("flower.svg", (straight((0, 0), (30, 10)),), np.eye(2, 3), (100.0, 100.0))
-    figure = plot_drawing(make_trajectory(), tip_path(make_trajectory()), drawing, CANVAS_MM, (33.0, 149.0))
+    figure = plot_drawing(
+        make_trajectory(), tip_path(make_trajectory()), account(make_trajectory()), drawing, CANVAS_MM, (33.0, 149.0)
+    )
     (axes,) = figure.axes
     start, end = (axes.transData.transform(point[::-1]) for point in pieces(line(axes, "wanted"))[0])
     assert end[0] > start[0]
@@ -92,7 +110,7 @@ def test_the_drawing_reads_as_on_a_screen_for_who_sits_behind_the_base(make_traj
 
 def test_canvas_ring_and_base_are_there_and_in_view(make_trajectory: MakeTrajectory) -> None:
     trajectory = make_trajectory()
-    (axes,) = plot_drawing(trajectory, tip_path(trajectory), None, CANVAS_MM, (33.0, 149.0)).axes
+    (axes,) = plot_drawing(trajectory, tip_path(trajectory), account(trajectory), None, CANVAS_MM, (33.0, 149.0)).axes
     assert {"base of the arm", "canvas", "reach of the pen"} <= labels(axes)
     shapes = {patch.get_label(): patch for patch in axes.patches}
     np.testing.assert_array_equal(shapes["canvas"].get_xy()[:4, ::-1], CANVAS_MM)
@@ -110,11 +128,13 @@ def test_canvas_ring_and_base_are_there_and_in_view(make_trajectory: MakeTraject
 
 def test_what_was_not_given_is_not_in_the_legend(make_trajectory: MakeTrajectory) -> None:
     trajectory = make_trajectory()
-    (axes,) = plot_drawing(trajectory, tip_path(trajectory)).axes
-    assert labels(axes) == {"base of the arm", "drawn", "tap", "travel, pen up"}
+    (axes,) = plot_drawing(trajectory, tip_path(trajectory), account(trajectory)).axes
+    assert labels(axes) == {"base of the arm", "paper", "travel, pen up"}
 
 
 def test_a_path_outside_the_ring_is_still_in_view(make_trajectory: MakeTrajectory) -> None:
     trajectory = make_trajectory()
-    (axes,) = plot_drawing(trajectory, tip_path(trajectory) - [400, 0, 0], None, None, (33.0, 149.0)).axes
+    (axes,) = plot_drawing(
+        trajectory, tip_path(trajectory) - [400, 0, 0], account(trajectory), None, None, (33.0, 149.0)
+    ).axes
     assert axes.get_ylim()[0] < -320

@@ -9,6 +9,7 @@ from xml.etree import ElementTree as ET
 import pytest
 from matplotlib.figure import Figure
 
+from planner.account import account_of
 from planner.errors import OutputError, UsageError
 from planner.plots.drawing import plot_drawing
 from planner.plots.figure_file import picture_format, save_figure
@@ -18,7 +19,7 @@ from planner.trajectory import Trajectory
 @pytest.fixture(scope="module")
 def figure(make_trajectory: Callable[..., Trajectory]) -> Figure:
     trajectory = make_trajectory(n_samples=41, drawing="$5 & <b>\a 花.svg")
-    return plot_drawing(trajectory, trajectory.positions)
+    return plot_drawing(trajectory, trajectory.positions, account_of(trajectory, trajectory.positions, 1.0))
 
 
 @pytest.mark.parametrize(("suffix", "begins"), [(".png", b"\x89PNG\r\n"), (".svg", b"<?xml"), (".PDF", b"%PDF-")])

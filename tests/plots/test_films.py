@@ -24,6 +24,7 @@ from planner.arms.paper_pose import PaperPose
 from planner.arrays import FloatArray
 from planner.checking.chain import chain_poses
 from planner.errors import OutputError, UsageError
+from planner.head import PenInk
 from planner.plots.film import Film
 from planner.plots.film_file import film_format, save_film
 from planner.plots.look import Look, Theme
@@ -90,7 +91,7 @@ def test_a_long_film_is_sped_up_unless_told_otherwise(arm: Arm, make_trajectory:
 def test_pen_lines_keep_every_stroke_and_tap(make_motion: Callable[..., Motion]) -> None:
     motion = make_motion()
     trajectory, tip_mm = motion.trajectory, motion.tip_mm
-    samples, begins = motion.pen_lines()
+    samples, begins = motion.pen_lines(10_000)
     assert set(trajectory.stroke[samples]) == {0, 1, 2}
     np.testing.assert_array_equal(samples[begins == 1], [np.flatnonzero(trajectory.stroke == k)[0] for k in range(3)])
     for stroke in (0, 2):
@@ -101,10 +102,26 @@ def test_pen_lines_keep_every_stroke_and_tap(make_motion: Callable[..., Motion])
         np.testing.assert_array_equal(kept[[0, -1]], whole[[0, -1]])
         gaps = np.linalg.norm(whole[:, np.newaxis] - kept, axis=2).min(axis=1)
         assert gaps.max() < 0.05
+    few, few_begins = motion.pen_lines(20)
+    assert set(few) <= set(samples) | set(np.flatnonzero(trajectory.pen)) and len(few) <= 20 + 2 * 3
+    np.testing.assert_array_equal(few[few_begins == 1], samples[begins == 1])
+
+
+def test_each_pen_inks_a_film_in_its_own_colour(make_motion: Callable[..., Motion]) -> None:
+    motion = make_motion(speed_factor=1.0, fps=5.0)
+    pens = (PenInk("red", (255, 0, 0), 1.0), PenInk("green", (0, 255, 0), 1.0))
+    change = int(np.flatnonzero(motion.trajectory.stroke == 1)[0]) - 1
+    motion = replace(motion, trajectory=replace(motion.trajectory, pens=pens, pen_changes=(change,)))
+    first, *_, last = [frame.astype(int) for frame in Film(motion, None, (33.0, 149.0), Look.of(dpi=60)).frames()]
+    for channel, other in ((0, 1), (1, 0)):
+        inked = [int((frame[..., channel] - frame[..., other] > 200).sum()) for frame in (first, last)]
+        assert inked[1] > inked[0] + 10
 
 
 def test_a_frame_has_the_arm_and_only_what_is_drawn_by_then(make_motion: Callable[..., Motion]) -> None:
     motion = make_motion(speed_factor=1.0, fps=5.0)
+    inked = replace(motion.trajectory, pens=(PenInk("red", (255, 0, 0), 1.0),))
+    motion = replace(motion, trajectory=inked)
     look = Look.of(dpi=60)
     frames = list(Film(motion, None, (33.0, 149.0), look).frames())
     assert len(frames) == 16
@@ -112,10 +129,10 @@ def test_a_frame_has_the_arm_and_only_what_is_drawn_by_then(make_motion: Callabl
     assert (width, height % 2) == (768, 0)
     assert all(frame.shape == frames[0].shape for frame in frames)
 
-    def blue(frame: FloatArray) -> int:
-        return int(((frame[..., 2].astype(int) - frame[..., 0]) > 60).sum())
+    def red(frame: FloatArray) -> int:
+        return int((frame[..., 0].astype(int) - frame[..., 1] > 150).sum())
 
-    amounts = [blue(frame) for frame in frames]
+    amounts = [red(frame) for frame in frames]
     drawn_by_then = motion.last_samples(motion.times_s) >= int(np.argmax(motion.trajectory.pen))
     assert max(np.array(amounts)[~drawn_by_then]) < min(np.array(amounts)[drawn_by_then][2:])
     assert amounts[-1] > amounts[0] + 20
@@ -209,10 +226,10 @@ def test_a_page_needs_nothing_but_itself(make_motion: Callable[..., Motion], tmp
     np.testing.assert_allclose(poses, motion.nodes_mm(motion.trajectory.times_s), atol=film["scale"])
     samples = np.frombuffer(base64.b64decode(film["samples"]), "<u4")
     line = np.frombuffer(base64.b64decode(film["line"]), "<i2").reshape(-1, 2) * film["scale"]
-    np.testing.assert_array_equal(samples, motion.pen_lines()[0])
+    np.testing.assert_array_equal(samples, motion.pen_lines(100_000)[0])
     np.testing.assert_allclose(line, motion.tip_mm[samples, :2], atol=film["scale"])
     assert len(np.frombuffer(base64.b64decode(film["begins"]), "u1")) == len(samples)
-    assert film["colours"]["surface"] == Look.of(theme).colours.surface
+    assert film["colours"][0]["surface"] == Look.of(theme).colours.surface
 
 
 def test_a_page_of_a_long_motion_stays_small(arm: Arm, make_trajectory: Callable[..., Trajectory]) -> None:

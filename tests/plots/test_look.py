@@ -12,9 +12,11 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
+from planner.account import account_of
 from planner.arms.arm import Arm
 from planner.plots.coloured_path import plot_error, plot_speed
 from planner.plots.drawing import plot_drawing
+from planner.plots.inked_sheet import plot_sheet
 from planner.plots.look import Colours, Look, Size, Theme
 from planner.plots.phase_plane import plot_phase_plane
 from planner.plots.profiles import plot_profiles
@@ -54,12 +56,20 @@ def test_headings_legends_and_panels_do_not_overlap(
     trajectory = make_trajectory(n_samples=101, drawing="W" * 300 + ".svg")
     s = np.linspace(0, 1, 101)
     tip_mm = np.column_stack((80 + 30 * s * np.cos(9 * s), 30 * s * np.sin(9 * s), 5.0 * ~trajectory.pen))
+    account = account_of(trajectory, tip_mm, 1.0)
     for figure in (
+        plot_sheet(trajectory, tip_mm, look),
         plot_profiles(trajectory, arm, look),
         plot_drawing(
-            trajectory, tip_mm, None, np.array([[40, -60], [40, 60], [120, 60], [120, -60]]), (33.0, 149.0), look
+            trajectory,
+            tip_mm,
+            account,
+            None,
+            np.array([[40, -60], [40, 60], [120, 60], [120, -60]]),
+            (33.0, 149.0),
+            look,
         ),
-        plot_speed(trajectory, tip_mm, None, (33.0, 149.0), look),
+        plot_speed(trajectory, tip_mm, account, None, (33.0, 149.0), look),
         plot_error(trajectory, tip_mm, s, 0.05, None, None, look),
         plot_phase_plane(trajectory, arm, tip_mm, None, look),
         plot_timeline(trajectory, tip_mm, 1.0, look),

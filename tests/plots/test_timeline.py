@@ -75,7 +75,7 @@ def test_bars_lie_where_the_phases_do_and_totals_beside_them() -> None:
         np.testing.assert_array_equal(covered, phases == phase)
         assert all(span.y0 < phase < span.y1 for span in spans)
     assert [bar.get_width() for bar in totals.patches] == pytest.approx(seconds_in(phases, RATE_HZ))
-    assert [text.get_text() for text in totals.texts][Phase.DRAWING] == "0.10 s, 33.3 %"
+    assert [text.get_text() for text in totals.texts][Phase.DRAWING] == "0.1 s, 33 %"
     assert (height.get_xlabel(), height.get_ylabel(), totals.get_xlabel()) == (
         "time (s)",
         "tip height (mm)",

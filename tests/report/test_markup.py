@@ -25,7 +25,7 @@ class Reader(HTMLParser):
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
         self.tags.append((tag, dict(attributes)))
-        if tag not in {"br", "img", "meta", "source"}:
+        if tag not in {"br", "img", "input", "meta", "source"}:
             self.open.append(tag)
 
     def handle_endtag(self, tag: str) -> None:
