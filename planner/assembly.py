@@ -12,9 +12,9 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray, IntArray
 from planner.errors import PlanError
 from planner.head import PenInk
+from planner.kinematics.chain import Kinematics
 from planner.kinematics.limits import Limits
 from planner.pen_drawing import PenDrawing
-from planner.redundancy.arm_model import ArmModel
 from planner.trajectory import TRAVELLING, Trajectory
 from planner.travel.pen_change import PenChange, plan_pen_change
 
@@ -37,10 +37,10 @@ class Samples:
 
 def assembled(drawings: Sequence[PenDrawing]) -> Samples:
     """What all pens draw, one after the other, with the pen changed at the park pose in between; at where the drawing
-    begins for an arm that has none. Errors: PlanError where there is no way there."""
+    of the pen that sticks out furthest begins for an arm that has none. Errors: PlanError where there is no way."""
     model = drawings[0].context.model
     arm = model.arm
-    start = drawings[0].moves[0].joints[0]
+    start = max(drawings, key=lambda one: one.group.pen.height_mm).moves[0].joints[0]  # clear of the paper for all
     park = start if arm.park is None else np.asarray(arm.park)
     positions: list[FloatArray] = []
     strokes: list[IntArray] = []
@@ -52,7 +52,7 @@ def assembled(drawings: Sequence[PenDrawing]) -> Samples:
     for before, after in pairwise((None, *drawings)):
         assert after is not None
         joints, stroke = _drawn(after)
-        change = None if before is None else _change(model, before, after, park if after.group.halts else None)
+        change = None if before is None else _change(before, after, park if after.group.halts else None)
         if change is not None:
             way = change.joints[1:-1]  # both ends are there already
             positions.append(way)
@@ -83,19 +83,25 @@ def assembled(drawings: Sequence[PenDrawing]) -> Samples:
 
 def _ink(drawing: PenDrawing) -> PenInk:
     pen = drawing.group.pen
-    return PenInk(pen.name, pen.colour, pen.width_mm)
+    return PenInk(pen.name, pen.colour, pen.width_mm, pen.height_mm)
 
 
-def _change(model: ArmModel, before: PenDrawing, after: PenDrawing, park: FloatArray | None) -> PenChange:
+def _change(before: PenDrawing, after: PenDrawing, park: FloatArray | None) -> PenChange:
     return plan_pen_change(
-        model.branches(before.context.settings.weights)[0].level,
-        Limits.of(model.arm),
+        _level(before),
+        _level(after),
+        Limits.of(before.context.model.arm),
         before.rules,
         before.moves[-1].joints[-1],
         after.moves[0].joints[0],
         park,
         after.group.delay_s,
     )
+
+
+def _level(drawing: PenDrawing) -> Kinematics:
+    """Of the arm with that pen."""
+    return drawing.context.model.branches(drawing.context.settings.weights)[0].level
 
 
 def _drawn(drawing: PenDrawing) -> tuple[FloatArray, IntArray]:

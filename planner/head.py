@@ -6,7 +6,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import IO, Any, NamedTuple
@@ -68,11 +68,13 @@ class PathWork:
 
 @dataclass(frozen=True, slots=True)
 class PenInk:
-    """A pen by what is seen of it. width_mm: 0 where it is not known."""
+    """A pen by what is seen of it. width_mm: 0 where it is not known. height_mm: how much further its tip sticks out
+    than that of the pen in the arm's file."""
 
     name: str
     colour: tuple[int, int, int]
     width_mm: float
+    height_mm: float = 0.0
 
     def __str__(self) -> str:
         return f"{hex_of(self.colour)} {_shortest(self.width_mm)} {self.name}"
@@ -186,6 +188,8 @@ class Head:
         if self.chosen.by is not None:
             entries.append((f"only_{self.chosen.by}", _list(self.chosen.kinds)))
         entries += [(f"pen_{index}", str(pen)) for index, pen in enumerate(self.pens)]
+        if any(pen.height_mm for pen in self.pens):
+            entries.append(("pen_heights_mm", " ".join(_shortest(pen.height_mm) for pen in self.pens)))
         if self.pen_changes:
             entries.append(("pen_changes", " ".join(map(str, self.pen_changes))))
         entries += [
@@ -330,6 +334,9 @@ def _pens(name: str, found: Mapping[str, tuple[str, int]]) -> tuple[tuple[PenInk
         if match is None or not is_number(match[2]):
             raise TrajectoryFileError(name, line, f"'# {key}:' is '{shown(text)}'; wanted a colour, a width and a name")
         pens.append(PenInk(match[3], colour_of(match[1]), float(match[2])))
+    if "pen_heights_mm" in found:
+        heights_mm = _numbers(name, found, "pen_heights_mm", len(pens))
+        pens = [replace(pen, height_mm=height_mm) for pen, height_mm in zip(pens, heights_mm, strict=True)]
     changes: list[int] = []
     if "pen_changes" in found:
         text, line = found["pen_changes"]

@@ -9,7 +9,7 @@ from planner.errors import UsageError
 from planner.pens import Pen, colour_of
 from planner.toml_file import read_toml
 
-_NUMBERS = ("width_mm", "speed_mm_s", "lift_mm", "lowering_speed_mm_s")
+_NUMBERS = ("width_mm", "speed_mm_s", "lift_mm", "lowering_speed_mm_s", "height_mm")
 _KEYS = ("name", "colour", "layers", *_NUMBERS)
 _MOST_PENS = 100
 

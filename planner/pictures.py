@@ -155,4 +155,4 @@ def _tip_mm(trajectory: Trajectory, arm: Arm) -> FloatArray:
     """(n_samples, 3)"""
     from planner.checking.chain import chain_poses
 
-    return chain_poses(arm, arm.from_file_units(trajectory.positions)).tip_mm.T
+    return chain_poses(arm, arm.from_file_units(trajectory.positions), trajectory.pen_heights_mm).tip_mm.T

@@ -121,10 +121,15 @@ def _ordered(drawing: Drawing, context: PlanContext, report: Report) -> tuple[Pl
     report("joining", 0, 1)
     own_mm_s = pen_speed_mm_s(model.arm, settings)
     drawings = []
+    models = {0.0: model}  # by how far the tip of a pen sticks out
     start_mm = canvas.to_arm_mm(np.zeros(2))
     for group in pen_groups(chosen, settings.pens_by, settings.pens, mm_per_unit):
         of_pen = settings.with_pen(group.pen, own_mm_s, group.speed_share) if group.is_named else settings
-        one = PenDrawing(group, context if of_pen == settings else PlanContext(model, of_pen))
+        height_mm = group.pen.height_mm
+        if height_mm not in models:
+            models[height_mm] = ArmModel(model.arm.holding(height_mm))
+        is_usual = of_pen == settings and not height_mm
+        one = PenDrawing(group, context if is_usual else PlanContext(models[height_mm], of_pen))
         one.order(place.svg_to_arm, start_mm)
         report("ordering strokes", 0, 1)
         if one.strokes:
@@ -182,7 +187,10 @@ def _worth_hiring(workers: Workers, drawing_file: DrawingSource) -> Workers:
 
 def _summary(trajectory: Trajectory, model: ArmModel, drawings: Sequence[PenDrawing], place: Placed) -> PlanSummary:
     arm = model.arm
-    tip_mm = model.kinematics.tip_mm(arm.independent_of(arm.from_file_units(trajectory.positions)))
+    free = arm.independent_of(arm.from_file_units(trajectory.positions))
+    tip_mm = model.kinematics.tip_mm(free)
+    if (heights_mm := trajectory.pen_heights_mm).any():
+        tip_mm = tip_mm + heights_mm[:, None] * model.kinematics.tool_axis(free)
     account = account_of(trajectory, tip_mm, arm.pen.clearance_mm)
     return PlanSummary(
         **{one.name: getattr(account, one.name) for one in fields(account)},

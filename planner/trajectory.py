@@ -165,6 +165,17 @@ class Trajectory:
         which: IntArray = np.searchsorted(np.array(self.pen_changes, dtype=np.int64), begins, side="right")
         return which
 
+    @property
+    def pen_heights_mm(self) -> FloatArray:
+        """(n_samples,) how much further the tip of the pen that is in the holder sticks out than that of the pen in the
+        arm's file."""
+        if not self.pens:
+            return np.zeros(self.n_samples)
+        changes = np.array(self.pen_changes, dtype=np.int64)
+        which = np.searchsorted(changes, np.arange(self.n_samples), side="right")
+        heights: FloatArray = np.array([pen.height_mm for pen in self.pens])[which]
+        return heights
+
     def line(self, sample: int) -> int:
         """Line of a sample in its file, counted from 1."""
         first_line = self.head.n_lines + 2 if self.first_line is None else self.first_line

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,13 +11,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from planner.arms.arm import Arm
+from planner.arms.arm_file import load_arm
+from planner.checking.check import check_trajectory
 from planner.cli import main
 from planner.drawing.drawing import Drawing, Outline
 from planner.drawing.layer_name import LayerName
 from planner.drawing.pen_groups import chosen_layers, only, pen_groups
-from planner.errors import UsageError
+from planner.drawing.source import SvgInMemory
+from planner.errors import TrajectoryFileError, UsageError
 from planner.pens import GroupBy, Pen, colour_of, hex_of
 from planner.pens_file import read_pens
+from planner.pipeline import plan
+from planner.progress import unreported
+from planner.settings import PlanSettings
 from planner.trajectory import read_trajectory
 
 LINE = np.linspace((0.0, 0.0), (30.0, 0.0), 4)[None]
@@ -131,6 +139,7 @@ def test_a_file_of_pens_is_read(tmp_path: Path) -> None:
         (PENS.replace("0.5", '"thin"'), "pen 1: width_mm is a number"),
         (PENS.replace("0.5", "-1"), "pen 1: .*width of pen 'blue'"),
         (PENS.replace("#00f", "blue"), "pen 1: 'blue' is no colour such as"),
+        (PENS.replace("width_mm", "height_mm").replace("0.5", "-101"), "pen 1: height_mm of pen 'blue' -101"),
         (PENS.replace("colour", "color"), "pen 1: unknown key 'color'"),
         (PENS.replace('name = "blue"\n', ""), "pen 1: has no name"),
         (PENS.replace('["sky"]', '"sky"'), "layers is a list"),
@@ -174,3 +183,54 @@ def test_pens_draw_one_after_the_other_in_register(tmp_path: Path, monkeypatch: 
     assert not whole.pen[change]
     assert main(["run", "all.csv", "--fast", "--quiet"]) == 0
     assert main(["run", "all.csv", "--quiet"]) == 2  # nobody is at a terminal to change the pen
+
+
+def _longer(arm: Arm, height_mm: float) -> Arm:
+    """The arm with its last link made longer along the pen."""
+    x, _, z = (height_mm * component for component in arm.pen.tool_axis)
+    joints = list(arm.joints)
+    last = max(index for index, joint in enumerate(joints) if joint.a_mm or joint.d_mm or joint.file_unit == "mm")
+    joints[last] = replace(joints[last], a_mm=joints[last].a_mm + x, d_mm=joints[last].d_mm + z)
+    return replace(arm, joints=tuple(joints))
+
+
+@pytest.mark.parametrize(("name", "tilt_deg"), [("drawing_arm", 0.0), ("scara", 0.0), ("so101", 0.2)])
+def test_a_pen_that_sticks_out_further_draws_as_one_of_an_arm_with_a_longer_pen(name: str, tilt_deg: float) -> None:
+    arm = load_arm(name)
+    tilt = np.radians(tilt_deg)
+    arm = replace(arm, paper=replace(arm.paper, tilt_x_rad=tilt, tilt_y_rad=-tilt / 2, z_mm=5 * tilt_deg))
+    drawing = SvgInMemory("d", SVG.encode())
+    pens = (Pen("short", layers=('a  \nb, "c" ✏',), height_mm=-2.0), Pen("long", layers=("2 sea",), height_mm=6.5))
+    planned = plan(drawing, PlanSettings(arm=name, by=GroupBy.LAYER, pens=pens), unreported, arm=arm)
+    assert check_trajectory(planned.trajectory, arm, planned.drawing).faults == ()
+    for part, pen in zip(planned.by_pen, pens, strict=True):
+        assert check_trajectory(part, arm, planned.drawing).faults == ()
+        of_usual_length = replace(part, pens=tuple(replace(one, height_mm=0.0) for one in part.pens))
+        assert check_trajectory(of_usual_length, _longer(arm, pen.height_mm), planned.drawing).faults == ()
+        assert not check_trajectory(of_usual_length, arm, planned.drawing).passed
+    with pytest.raises(UsageError, match="three_joint does not keep its pen upright"):
+        load_arm("three_joint").holding(1.0)
+
+
+def test_pens_of_several_heights_are_played_and_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("d.svg").write_text(SVG, encoding="utf-8")
+    Path("pens.toml").write_text('[[pen]]\nname="a"\ncolour="#00f"\nheight_mm=-1\n[[pen]]\nname="b"\nheight_mm=7')
+    assert (
+        main(["d.svg", "-o", "t.csv", "--by", "colour", "--pens", "pens.toml", "--quiet", "--layers", "2,%grid"]) == 0
+    )
+    trajectory = read_trajectory(Path("t.csv"))
+    assert [pen.height_mm for pen in trajectory.pens] == [-1.0, 7.0]
+    assert set(trajectory.pen_heights_mm[trajectory.pen]) == {-1.0, 7.0}
+    assert main(["check", "t.csv", "--drawing", "d.svg"]) == 0
+    for options in ([], ["--from-stroke", "1"]):
+        assert main(["run", "t.csv", "--fast", "--quiet", "--picture", "drawn.svg", *options]) == 0
+        drawn = Path("drawn.svg").read_text().count("<polyline")
+        assert drawn == 2 - len(options) // 2
+    told = Path("t.csv").read_text()
+    Path("untold.csv").write_text(re.sub("# pen_heights_mm.*\n", "", told))
+    assert main(["check", "untold.csv"]) == 1
+    for faulty in ("7", "7 x", "1 2 3"):
+        Path("t.csv").write_text(re.sub("(# pen_heights_mm:).*", rf"\1 {faulty}", told))
+        with pytest.raises(TrajectoryFileError, match="pen_heights_mm"):
+            read_trajectory(Path("t.csv"))

@@ -45,6 +45,15 @@ def link_nodes_mm(arm: Arm, positions: FloatArray) -> FloatArray:
     return np.stack([node for frame in frames for node in (frame.bend, frame.origin)], axis=1)
 
 
+def tips_mm(arm: Arm, positions: FloatArray, heights_mm: FloatArray | float = 0.0) -> FloatArray:
+    """(n, 3) the tips of pens that stick out by `heights_mm` (n,) further than the one in the arm's file."""
+    last = _frames(arm, positions)[-1]
+    along_x, along_y, along_z = arm.pen.tool_axis
+    axis = along_x * last.x + along_y * last.y + along_z * last.z
+    tips: FloatArray = last.origin + np.reshape(heights_mm, (-1, 1)) * axis
+    return tips
+
+
 class _Frame(NamedTuple):
     """The frame at the end of a link in n configurations: axes, origin and where the link bends, each (n, 3)."""
 

@@ -8,18 +8,20 @@ from typing import IO, cast
 import numpy as np
 
 from hardware.compensation.servo_values import Calibration
-from hardware.motion.tip import link_nodes_mm
+from hardware.motion.tip import tips_mm
 from hardware.playback.program import Program
 from planner.arms.arm import Arm
 from planner.files import written_aside
+from planner.trajectory import Trajectory
 
 
-def write_record(arm: Arm, program: Program, calibration: Calibration, target: Path) -> None:
+def write_record(arm: Arm, trajectory: Trajectory, program: Program, calibration: Calibration, target: Path) -> None:
     """One row a set point: its time, the stroke being drawn or -1, where the pen is meant to be on the paper, and the
     final value of each servo, in us or counts. Errors: OutputError."""
     commanded = calibration.to_servos(program.positions)
-    tips_mm = link_nodes_mm(arm, program.meant)[:, -1, :2]
-    table = np.column_stack((np.arange(len(commanded)) / program.rate_hz, program.stroke, tips_mm, commanded))
+    heights_mm = trajectory.pen_heights_mm[np.floor(program.sample).astype(np.int64)]
+    places_mm = tips_mm(arm, program.meant, heights_mm)[:, :2]
+    table = np.column_stack((np.arange(len(commanded)) / program.rate_hz, program.stroke, places_mm, commanded))
     names = [f"{joint.name}_{calibration.unit}" for joint in arm.joints]
     row = ",".join(("%.6f", "%d", "%.4f", "%.4f", *["%.4f"] * len(names))) + "\n"
     with written_aside(target) as file:

@@ -8,7 +8,7 @@ from typing import IO, cast
 
 import numpy as np
 
-from hardware.motion.tip import link_nodes_mm
+from hardware.motion.tip import tips_mm
 from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray
 from planner.files import written_aside
@@ -18,13 +18,14 @@ _MARGIN_MM = 5.0
 _PEN_MM = 0.4
 
 
-def drawn_lines(arm: Arm, positions: FloatArray) -> list[FloatArray]:
+def drawn_lines(arm: Arm, positions: FloatArray, heights_mm: FloatArray | float = 0.0) -> list[FloatArray]:
     """Lines (n, 2) in arm millimetres that the pen leaves as the joints go through `positions` (n, n_joints).
+    heights_mm: (n,), how much further its tip sticks out than that of the pen in the arm's file.
 
     Pens give a little: one draws from just below the clearance on. There a planned tip moves straight up or down, and a
     real one may be a little off. A tap is a line of points on one spot.
     """
-    tip_mm = link_nodes_mm(arm, positions)[:, -1]
+    tip_mm = tips_mm(arm, positions, heights_mm)
     down = np.concatenate(([False], is_drawing(arm, tip_mm[:, 2]), [False]))
     begins, ends = np.flatnonzero(down[1:] & ~down[:-1]), np.flatnonzero(down[:-1] & ~down[1:])
     return [tip_mm[begin:end, :2] for begin, end in zip(begins, ends, strict=True)]

@@ -53,6 +53,7 @@ class MujocoArm:
         self._connected = False
         self._at_s = 0.0
         self._recorder = Recorder(arm.n_joints)
+        self._pen_height_mm = 0.0
 
     @property
     def recording(self) -> Recording:
@@ -63,6 +64,10 @@ class MujocoArm:
         """(3,) where the tip of the pen is in the paper's frame, which is the model's own."""
         tip_mm: FloatArray = self._data.site("tip").xpos / _M
         return tip_mm
+
+    def insert(self, height_mm: float) -> None:
+        """A pen whose tip sticks out so much further than the arm's file says."""
+        self._pen_height_mm = height_mm
 
     def open(self) -> None:
         """There is no line, but a film begins. Errors: HardwareError where there are no graphics for it."""
@@ -113,7 +118,8 @@ class MujocoArm:
             self._mujoco.mj_step(self._model, self._data)
             self._at_s += _STEP_S
             if self._film is not None:
-                self._film.watch(self._data, drawing=bool(is_drawing(self._arm, self.tip_mm[2:])[0]))
+                height_mm = self.tip_mm[2:] - self._pen_height_mm
+                self._film.watch(self._data, drawing=bool(is_drawing(self._arm, height_mm)[0]))
 
     def _record(self) -> None:
         self._recorder.add(self._at_s, self._data.ctrl / self._scale, self._data.qpos / self._scale)

@@ -8,7 +8,7 @@ frame unless the file says where it lies, and the tip of the pen is the origin o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 
@@ -17,6 +17,7 @@ import numpy as np
 from planner.arms.accuracy import Accuracy
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.arrays import FloatArray
+from planner.errors import UsageError
 from planner.settings import DEFAULT_WEIGHTS, ConfigurationWeights
 
 
@@ -248,6 +249,19 @@ class Arm:
         """(..., n_joints) from the degrees and millimetres of files to rad or mm."""
         converted: FloatArray = np.asarray(positions, dtype=np.float64) * self.per_file_unit
         return converted
+
+    def holding(self, height_mm: float) -> Arm:
+        """The arm with a pen whose tip sticks out so much further, for which the paper is so much higher: what is
+        computed of its tip is true of the pen in the file, which stands that far above what is drawn. Exact for a pen
+        that is held upright. Errors: UsageError for an arm that lets it tilt."""
+        if not height_mm:
+            return self
+        if self.pen.hold is PenHold.FREE:
+            raise UsageError(
+                f"height_mm of a pen is {height_mm:g}, and arm {self.name} does not keep its pen upright: give each"
+                " such pen an arm file of its own, with the length that it has"
+            )
+        return replace(self, paper=self.paper.raised(height_mm))
 
     @property
     def column_names(self) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, sin
 
 import numpy as np
@@ -52,6 +52,10 @@ class PaperPose:
         back[:3, :3] = forth[:3, :3].T
         back[:3, 3] = -forth[:3, :3].T @ forth[:3, 3]
         return back
+
+    def raised(self, height_mm: float) -> PaperPose:
+        """So much higher, straight up from the base."""
+        return replace(self, z_mm=self.z_mm + height_mm)
 
     @staticmethod
     def of(T_base_paper: FloatArray) -> PaperPose:

@@ -93,13 +93,15 @@ class Sweep:
 def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation, per_step: int = POINTS_PER_STEP) -> Sweep:
     """The arm's poses at and, with more than one point a step, between all samples."""
     positions = arm.from_file_units(trajectory.positions)
+    heights_mm = trajectory.pen_heights_mm
     n_points = (trajectory.n_samples - 1) * per_step + 1
     tip, lowest, tilt = np.empty((n_points, 3)), np.empty(n_points), np.empty(n_points)
     capsules = Capsules(arm, chain_poses(arm, positions[:1]).rows)
     clearances: list[tuple[FloatArray, IntArray]] = []
     start = 0
     for block in positions_between(positions, interpolation, per_step):
-        poses = chain_poses(arm, block)
+        samples = np.arange(start, start + len(block)) // per_step
+        poses = chain_poses(arm, block, heights_mm[samples])
         if capsules.pair_names:
             clearances.append(capsules.clearances(poses))
         part = slice(start, start + len(block))

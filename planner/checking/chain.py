@@ -14,7 +14,7 @@ from planner.arrays import FloatArray
 class ChainPoses:
     """Where the chain is in n configurations.
 
-    All in the paper's frame but the tool. tip_mm: (3, n) the origin of the last frame. lowest_mm: (n,) the height of
+    All in the paper's frame but the tool. tip_mm: (3, n) of the pen. lowest_mm: (n,) the height of
     the lowest node of the links, the tip aside: links are straight between nodes, so no part of one is lower.
     tool: (3, n) direction of `pen.tool_axis` in the base frame. nodes_mm: (n_nodes, 3, n) the nodes, from the base's
     origin to the tip; rows: of each segment between two of them, the row that it belongs to.
@@ -27,8 +27,9 @@ class ChainPoses:
     rows: tuple[int, ...]
 
 
-def chain_poses(arm: Arm, positions: FloatArray) -> ChainPoses:
-    """Poses of positions (n, n_joints) in rad and mm.
+def chain_poses(arm: Arm, positions: FloatArray, heights_mm: FloatArray | float = 0.0) -> ChainPoses:
+    """Poses of positions (n, n_joints) in rad and mm. heights_mm: (n,), how far beyond the origin of the last frame the
+    tip is along the tool, as the pens of a trajectory have it.
 
     Each row is Rz(theta) Tz(d) Tx(a) Rx(alpha), so the nodes of a link are the points reached after Tz(d)
     and after Tx(a); a displacement that is always zero makes no node.
@@ -55,14 +56,20 @@ def chain_poses(arm: Arm, positions: FloatArray) -> ChainPoses:
             node = node + joint.a_mm * x
             nodes.append(node)
             rows.append(row)
+        offset = z
         cosine, sine = np.cos(joint.alpha_rad), np.sin(joint.alpha_rad)
         y, z = cosine * y + sine * z, cosine * z - sine * y
     along_x, along_y, along_z = arm.pen.tool_axis
+    tool = along_x * x + along_y * y + along_z * z
+    if np.any(heights_mm):
+        node = nodes[-1] = node + heights_mm * tool
+        if rows[-2:] == [row, row]:  # of a last link along d and then along a, its bend goes as far along d
+            nodes[-2] = nodes[-2] + heights_mm * (tool * offset).sum(axis=0) * offset
     corners = np.stack(nodes)
     heights = (corners[:-1] if rows else corners)[:, 2].copy()
     heights[0] = np.maximum(heights[0], 0.0)  # the base stands beside the paper
     lowest = heights.min(axis=0)
-    return ChainPoses(node, lowest, upright.T @ (along_x * x + along_y * y + along_z * z), corners, tuple(rows))
+    return ChainPoses(node, lowest, upright.T @ tool, corners, tuple(rows))
 
 
 def _undo_turns(vectors: FloatArray, yaw: float, tilt_y: float, tilt_x: float) -> FloatArray:

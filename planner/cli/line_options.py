@@ -39,7 +39,8 @@ def add_pen_options(pens: argparse._ArgumentGroup) -> None:
         default=(),
         metavar="FILE",
         help="the pens that there are: tables [[pen]] with name, colour, width_mm, speed_mm_s, lift_mm,"
-        " lowering_speed_mm_s, layers; each draws the layers it names, or the colours or widths nearest to it",
+        " lowering_speed_mm_s, height_mm (how much further its tip sticks out), layers; each draws the layers it"
+        " names, or the colours or widths nearest to it",
     )
 
 

@@ -23,6 +23,7 @@ def run(arguments: list[str]) -> int:
     from planner.cli.run_events import tell_ended
     from planner.cli.run_files import refuse_unkept
     from planner.cli.run_job import dry_run_lines, examine
+    from planner.cli.run_pens import PenChanges
     from planner.cli.run_pictures import check_pictures, save_pictures
     from planner.cli.run_playing import play_out, set_up, true_arm_of
     from planner.cli.run_resume import where_to_begin
@@ -55,18 +56,20 @@ def run(arguments: list[str]) -> int:
             compensated = job.compensated(program)
             commanded = job.commanded(compensated)
         if options.record and job.calibration is not None:
-            write_record(job.arm, compensated, job.calibration, options.record)
+            write_record(job.arm, job.trajectory, compensated, job.calibration, options.record)
         if options.driver not in SIMULATORS or options.servos == "real":  # others have no slack
             program = compensated
         if options.dry_run:
             print_lines(dry_run_lines(options, job, program, commanded))
             return 0
-        result = play_out(options, job.arm, program, rig, beginning, job.trajectory)
+        changes = PenChanges(job.trajectory, beginning.next_stroke, rig.clock, rig.insert)
+        result = play_out(options, job.clear_arm, program, rig, beginning, job.trajectory, changes)
     lines = result.lines()
     if rig.recording is not None and options.picture:
-        positions = rig.recording().positions
+        moved = rig.recording()
+        heights_mm = changes.heights_mm(moved.times_s)
         with waiting("drawing", quiet=options.quiet or options.events):
-            lines += save_pictures(options.picture, job, true_arm, positions, beginning.next_stroke)
+            lines += save_pictures(options.picture, job, true_arm, moved.positions, heights_mm, beginning.next_stroke)
     if options.events:
         tell_ended(result.end.value, lines, complete=result.complete, parked=result.parked)
     elif not options.quiet:

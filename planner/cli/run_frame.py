@@ -6,7 +6,7 @@ import argparse
 
 import numpy as np
 
-from hardware.motion.tip import link_nodes_mm
+from hardware.motion.tip import tips_mm
 from hardware.playback.player import play
 from hardware.playback.program import Program, visiting
 from planner.arrays import FloatArray
@@ -27,7 +27,7 @@ def go_round(options: argparse.Namespace, job: Job, rig: Rig) -> bool:
         rig.driver.open()
         if not options.quiet and wishes.has_keys:
             print_note(KEYS)
-        result = play(program, job.arm, rig.driver, rig.clock, request=wishes.request)
+        result = play(program, job.clear_arm, rig.driver, rig.clock, request=wishes.request)
     if not options.quiet:
         print_lines(result.lines())
     return result.complete
@@ -39,7 +39,7 @@ def framing(job: Job) -> Program:
     from planner.travel.raised import raised_configurations
     from planner.travel.travel_moves import TravelRules
 
-    settings, arm = PlanSettings(), job.arm
+    settings, arm = PlanSettings(), job.clear_arm
     rules = TravelRules(
         arm.pen.clearance_mm, arm.pen.lift_mm, settings.lowering_speed_mm_s, job.rate_hz, settings.tolerance_mm
     )
@@ -53,6 +53,7 @@ def _corners_mm(job: Job) -> FloatArray:
     if told is not None:
         near, far, right, left = told
     else:
-        tips = link_nodes_mm(job.arm, job.positions[job.trajectory.pen])[:, -1, :2]
+        drawn = job.trajectory.pen
+        tips = tips_mm(job.arm, job.positions[drawn], job.trajectory.pen_heights_mm[drawn])[:, :2]
         (near, right), (far, left) = tips.min(axis=0), tips.max(axis=0)
     return np.array([[far, left], [far, right], [near, right], [near, left]])

@@ -35,13 +35,19 @@ class Job:
     rate_hz: float
 
     @property
+    def clear_arm(self) -> Arm:
+        """The arm with the pen that sticks out furthest: a motion that keeps that off the paper keeps off every pen.
+        Errors: UsageError for pens of several heights in an arm that lets them tilt."""
+        return self.arm.holding(max((pen.height_mm for pen in self.trajectory.pens), default=0.0))
+
+    @property
     def last_stroke(self) -> int:
         return int(self.trajectory.stroke.max())
 
     def program(self, beginning: Entry) -> Program:
         """The drawing from where the run begins. Errors: UsageError, PlanError."""
         return make_program(
-            self.arm,
+            self.clear_arm,
             self.positions,
             self.trajectory.stroke,
             self.rate_hz,
@@ -52,7 +58,7 @@ class Job:
 
     def parking(self) -> Program:
         """For an arm that has drawn everything: it goes to its park pose, and that is all."""
-        return parking(self.arm, self.positions, self.rate_hz, self.arm.park)
+        return parking(self.clear_arm, self.positions, self.rate_hz, self.arm.park)
 
     def compensated(self, program: Program) -> Program:
         """The program with the slack of the servos taken up; as it is for a pattern, in which slack has to show."""

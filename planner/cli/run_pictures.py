@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hardware.motion.tip import link_nodes_mm
+from hardware.motion.tip import tips_mm
 from hardware.simulation.ink import drawn_lines, write_svg
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
@@ -26,17 +26,22 @@ def check_pictures(targets: Sequence[Path], source: Path) -> None:
 
 
 def save_pictures(
-    targets: Sequence[Path], job: Job, true_arm: Arm, positions: FloatArray, first_stroke: int
+    targets: Sequence[Path],
+    job: Job,
+    true_arm: Arm,
+    positions: FloatArray,
+    heights_mm: FloatArray,
+    first_stroke: int,
 ) -> list[str]:
-    """Write what was drawn as the joints of `true_arm` went through `positions` (n, n_joints), rad or mm; its drawing
-    error in words.
+    """Write what was drawn as the joints of `true_arm` went through `positions` (n, n_joints), rad or mm, with pens
+    that stick out by `heights_mm` (n,); its drawing error in words.
 
     An .svg holds what was drawn at its true size, any other picture shows it beside what was wanted from
     `first_stroke` on. Errors: OutputError.
     """
     from planner.checking.drawing_error import drawing_error
 
-    drawn = drawn_lines(true_arm, positions)
+    drawn = drawn_lines(true_arm, positions, heights_mm)
     wanted = list(_wanted(job, first_stroke))
     text = drawing_error(drawn, wanted).text()
     for target in targets:
@@ -59,6 +64,7 @@ def _wanted(job: Job, first_stroke: int) -> Iterator[FloatArray]:
     """The tip's path on the paper, stroke by stroke."""
     stroke = job.trajectory.stroke
     samples = np.flatnonzero(stroke >= first_stroke)
-    tip_mm = link_nodes_mm(job.arm, job.positions[samples])[:, -1, :2]
+    heights_mm = job.trajectory.pen_heights_mm[samples]
+    tip_mm = tips_mm(job.arm, job.positions[samples], heights_mm)[:, :2]
     begins = np.flatnonzero(np.diff(stroke[samples], prepend=-1))
     yield from np.split(tip_mm, begins[1:])

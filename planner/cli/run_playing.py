@@ -23,9 +23,9 @@ from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arms.usual_servos import describes_servos, with_usual_servos
 from planner.cli.controls import KEYS, Controls, controls
-from planner.cli.events import tell
 from planner.cli.run_events import ToldRun
 from planner.cli.run_journal import RunJournal
+from planner.cli.run_pens import PenChanges
 from planner.cli.terminal import print_note, print_warnings, progress
 from planner.counted import counted
 from planner.error_model.random_arm import random_arm
@@ -41,11 +41,13 @@ _REPORTS_A_SECOND = 10
 
 @dataclass(frozen=True, slots=True)
 class Rig:
-    """The driver that a run plays on, and its clock. recording: of a simulated arm, None for a real one."""
+    """The driver that a run plays on, and its clock. recording: of a simulated arm, None for a real one. insert: tells
+    one that shows the ink how much further the tip of the next pen sticks out than that of the arm's file, in mm."""
 
     driver: Driver
     clock: Clock
     recording: Callable[[], Recording] | None
+    insert: Callable[[float], None] = lambda height_mm: None
 
 
 def true_arm_of(options: argparse.Namespace, arm: Arm) -> Arm:
@@ -72,14 +74,22 @@ def set_up(options: argparse.Namespace, arm: Arm, true_arm: Arm) -> Rig:
     simulated = _simulated(options, arm, true_arm, clock)
     if simulated is None:
         return Rig(make_driver(options.driver, arm, Line(options.port or "", options.baud), clock), clock, None)
-    return Rig(simulated, clock, lambda: simulated.recording)
+    if isinstance(simulated, SimulatedArm):
+        return Rig(simulated, clock, lambda: simulated.recording)
+    return Rig(simulated, clock, lambda: simulated.recording, simulated.insert)
 
 
 def play_out(
-    options: argparse.Namespace, arm: Arm, program: Program, rig: Rig, beginning: Entry, trajectory: Trajectory
+    options: argparse.Namespace,
+    arm: Arm,
+    program: Program,
+    rig: Rig,
+    beginning: Entry,
+    trajectory: Trajectory,
+    changes: PenChanges,
 ) -> PlaybackResult:
-    """How playing the program of the trajectory went. Errors: HardwareError, OutputError, and UsageError where pens
-    have to be changed and there is nobody to do it."""
+    """How playing the program of the trajectory went. arm: with the pen that sticks out furthest. Errors:
+    HardwareError, OutputError, and UsageError where pens have to be changed and there is nobody to do it."""
     last_stroke = int(trajectory.stroke.max())
     journal = RunJournal(options, beginning, last_stroke, rig.driver, program.rate_hz, rig.clock)
     ended, complete = "broken off", False
@@ -101,7 +111,6 @@ def play_out(
                     if options.events
                     else _Display(show, rig.driver, every, last_stroke, None if options.quiet else wishes)
                 )
-                changes = _PenChanges(trajectory, wishes, asks=not options.fast, tells=options.events)
                 result = play(
                     program,
                     arm,
@@ -110,7 +119,7 @@ def play_out(
                     request=wishes.request,
                     observers=(display, journal),
                     halts=trajectory.pen_changes,
-                    waiting=changes.waiting,
+                    waiting=changes.waiting_for(None if options.fast else wishes, tells=options.events),
                 )
             ended, complete = result.end.value, result.complete
         except HardwareError as error:
@@ -153,27 +162,6 @@ def _announced(options: argparse.Namespace, program: Program, arm: Arm) -> str:
         f"the position of the arm is not known: its servos are attached at the park pose ({park}), from which it "
         f"takes {approach_s:.1f} s to the drawing"
     )
-
-
-class _PenChanges:
-    """Asks for the next pen, and waits for a key."""
-
-    def __init__(self, trajectory: Trajectory, wishes: Controls, *, asks: bool, tells: bool) -> None:
-        self._pens, self._wishes, self._asks, self._tells = trajectory.pens, wishes, asks, tells
-        self._asked = -1
-
-    def waiting(self, halt: int) -> bool:
-        if not self._asks:
-            return False
-        if self._asked != halt:
-            self._asked = halt
-            self._wishes.await_key()
-            pen = self._pens[halt + 1]
-            if self._tells:
-                tell("insert", pen=pen.name, colour=pen.colour, number=halt + 1)
-            else:
-                print_note(f"insert {pen.name}, then press space")
-        return self._wishes.is_awaiting()
 
 
 class _Display(Observer):

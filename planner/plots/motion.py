@@ -57,9 +57,12 @@ class Motion:
         share = (at - before)[:, np.newaxis]
         positions = self.trajectory.positions
         joints = self.arm.from_file_units((1 - share) * positions[before] + share * positions[after])
-        return np.concatenate(
+        nodes = np.concatenate(
             [_nodes(self.arm, joints[first : first + _BLOCK]) for first in range(0, len(joints), _BLOCK)]
         )
+        if any(pen.height_mm for pen in self.trajectory.pens):  # whose tip is not where the last link ends
+            nodes[:, -1] = (1 - share) * self.tip_mm[before] + share * self.tip_mm[after]
+        return nodes
 
     def pen_lines(self, most: int) -> tuple[IntArray, IntArray]:
         """Samples that tell what the pen draws until the end of this part, and which begin a line, both (k,).

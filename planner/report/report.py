@@ -65,7 +65,7 @@ def write_report(planned: Planned, target: Path, report: Callable[[int, int], No
 def report_page(planned: Planned, report: Callable[[int, int], None] = lambda done, total: None) -> Markup:
     """The page as text, the same for the same plan."""
     trajectory, arm = planned.trajectory, planned.model.arm
-    tip_mm = chain_poses(arm, arm.from_file_units(trajectory.positions)).tip_mm.T
+    tip_mm = chain_poses(arm, arm.from_file_units(trajectory.positions), trajectory.pen_heights_mm).tip_mm.T
     canvas_mm = canvas_of(planned.model, planned.settings.canvas, arm.pen.lift_mm).corners_arm_mm
     frame, script = film(motion_of(trajectory, arm, tip_mm), canvas_mm, planned.reach_mm)
     sections: list[Section] = []

@@ -27,7 +27,8 @@ class PenChange:
 
 
 def plan_pen_change(
-    kinematics: Kinematics,
+    before: Kinematics,
+    after: Kinematics,
     limits: Limits,
     rules: TravelRules,
     start: FloatArray,
@@ -36,11 +37,12 @@ def plan_pen_change(
     delay_s: float = 0.0,
 ) -> PenChange:
     """From configuration `start` (n_joints,) through `park`, or straight where it is None, to `end`, and a rest there.
-    Errors: PlanError where no way clear of the paper is found."""
+    before, after: of the arm with the one pen and with the other. Errors: PlanError where no way clear of the paper is
+    found."""
     delay = np.repeat(end[None], round(delay_s * rules.rate_hz), axis=0)
     if park is None:
-        return PenChange(np.concatenate((start[None], _leg(kinematics, limits, rules, start, end), delay)), None)
-    out, back = _leg(kinematics, limits, rules, start, park), _leg(kinematics, limits, rules, park, end)
+        return PenChange(np.concatenate((start[None], _leg(after, limits, rules, start, end), delay)), None)
+    out, back = _leg(before, limits, rules, start, park), _leg(after, limits, rules, park, end)
     n_rest = max(round(_REST_S * rules.rate_hz), 3)
     rest = np.repeat(park[None], n_rest, axis=0)
     joints = np.concatenate((start[None], out, rest, back, delay))
