@@ -129,6 +129,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.fonts import fonts
 
             return fonts(rest)
+        case "inkscape":
+            from planner.cli.inkscape import inkscape
+
+            return inkscape(rest)
         case "jog":
             from planner.cli.jog import jog
 

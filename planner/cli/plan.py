@@ -47,6 +47,7 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan arm [NAME]           list the arms, or describe one
   plan paper --arm ARM      where to lay the paper, as a sheet to print
   plan estimate FOLDER      how long each drawing takes, without writing anything
+  plan inkscape             install the extension for Inkscape
   plan config               which options are in force, and where each is said"""
 
 _EPILOG = """\
