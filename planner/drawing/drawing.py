@@ -22,6 +22,7 @@ class Outline:
     zero length is one curve with four equal points: a pen tap. A closed subpath ends where it began.
     layer: the name of the layer that it is on, or "". colour: sRGB. width: of its stroke in user units, 0 where it is
     the edge of a fill. gap: (n, 4, 2), of a dash, the curves to where the next dash of its line begins; else None.
+    cap, join: of its stroke, as SVG calls them.
     """
 
     beziers: FloatArray
@@ -29,6 +30,8 @@ class Outline:
     colour: tuple[int, int, int] = (0, 0, 0)
     width: float = 0.0
     gap: FloatArray | None = None
+    cap: str = "butt"
+    join: str = "miter"
 
 
 @dataclass(frozen=True, eq=False, slots=True)

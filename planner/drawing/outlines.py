@@ -102,4 +102,7 @@ def _without_repeats(shapes: Sequence[Shape], lines: Sequence[Sequence[Subpath]]
 
 
 def _outline(shape: Shape, path: Subpath) -> Outline:
-    return Outline(path.beziers, shape.layer, shape.colour, shape.width, path.gap)
+    if shape.stroke is None:
+        return Outline(path.beziers, shape.layer, shape.colour, shape.width, path.gap)
+    stroke = shape.stroke
+    return Outline(path.beziers, shape.layer, shape.colour, shape.width, path.gap, stroke.cap, stroke.join)

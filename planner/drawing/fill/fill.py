@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 import shapely
@@ -20,9 +21,13 @@ from planner.drawing.subpath import polyline
 
 _GOLDEN_DEG = 137.50776405003785
 """From one colour's angle to the next: no two are ever near each other for a while."""
+_DOUBLE = (FillKind.CROSS, FillKind.ZIGZAG)
+"""Fills whose lines cross or meet: of two hatches that each leave a share of the paper free, the square of it stays."""
 _WIDER = 1.5
 """How much wider than the pen's line a stroke has to be to be drawn more than once."""
 _CHORD_MM = 0.01
+_CAPS: dict[str, Literal["flat", "round", "square"]] = {"round": "round", "square": "square"}
+_JOINS: dict[str, Literal["mitre", "round", "bevel"]] = {"round": "round", "bevel": "bevel"}
 
 
 def with_fills(drawing: Drawing, options: FillOptions, svg_to_arm: FloatArray) -> Drawing:
@@ -64,8 +69,8 @@ def _lines(area: BaseGeometry, kind: FillKind, angle_rad: float, spacing_mm: flo
     if kind in (FillKind.CONTOUR, FillKind.SPIRAL):
         levels = contours(area, spacing_mm)
         if kind is FillKind.SPIRAL:
-            return spirals(levels, area, spacing_mm)
-        return [ring for rings in levels for ring in rings]
+            return spirals(levels, spacing_mm)
+        return [line for level in levels for line in level.lines]
     if kind is FillKind.ZIGZAG:
         return hatched(area, angle_rad, spacing_mm / 2, is_zigzag=True)
     lines = hatched(area, angle_rad, spacing_mm)
@@ -74,7 +79,12 @@ def _lines(area: BaseGeometry, kind: FillKind, angle_rad: float, spacing_mm: flo
 
 def _spacing_mm(options: FillOptions, colour: tuple[int, int, int]) -> float:
     """Between lines of an area of this colour."""
-    return options.spacing_mm / (1.0 - lightness(colour)) if options.by is FillBy.LIGHTNESS else options.spacing_mm
+    if options.by is not FillBy.LIGHTNESS:
+        return options.spacing_mm
+    light = lightness(colour)
+    if options.kind in _DOUBLE:
+        light = light**0.5
+    return options.spacing_mm / (1.0 - light)
 
 
 def is_wide(outline: Outline, options: FillOptions, mm_per_unit: float) -> bool:
@@ -84,17 +94,21 @@ def is_wide(outline: Outline, options: FillOptions, mm_per_unit: float) -> bool:
 
 
 def _passes(outline: Outline, width_mm: float, options: FillOptions, svg_to_arm: FloatArray) -> list[FloatArray]:
-    """Rings within a wide stroke, evenly spaced between its edge and its middle, and the middle."""
+    """Lines side by side within a wide stroke; its middle where it is too short for them."""
     (line,) = flatten_all([outline], svg_to_arm, _CHORD_MM)
-    half_mm = (width_mm - options.spacing_mm) / 2
-    n_rings = int(np.ceil(half_mm / options.spacing_mm))
-    middle = shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0])
-    rings: list[FloatArray] = []
-    for number in range(n_rings):
-        covered = middle.buffer(half_mm * (1.0 - number / n_rings), quad_segs=32)
-        parts = [covered.exterior, *covered.interiors] if covered.geom_type == "Polygon" else []
-        rings += [np.asarray(part.coords)[:, :2] for part in parts]
-    return [*rings, line]
+    if len(line) == 1:
+        middle: BaseGeometry = shapely.Point(line[0])
+    else:
+        is_closed = len(line) > 3 and bool(np.all(line[0] == line[-1]))
+        middle = shapely.LinearRing(line) if is_closed else shapely.LineString(line)
+    covered = middle.buffer(
+        width_mm / 2,
+        quad_segs=32,
+        cap_style=_CAPS.get(outline.cap, "flat"),
+        join_style=_JOINS.get(outline.join, "mitre"),
+    )
+    inner = covered.buffer(-options.spacing_mm / 2, join_style="mitre")
+    return spirals(contours(inner, options.spacing_mm), options.spacing_mm) or [line]
 
 
 def _outline(

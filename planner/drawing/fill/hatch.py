@@ -1,17 +1,20 @@
-"""Parallel lines across an area, joined at their ends wherever the way between them stays inside."""
+"""Parallel lines across an area, joined along its edge, or across it."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from planner.arrays import BoolArray, FloatArray
+from planner.arrays import FloatArray, IntArray
+from planner.drawing.fill.edge import Edge
 from planner.errors import PlanError
 
 MOST_LINES = 400_000
-_JOINED_WITHIN = 3.0
-"""Spacings that the way between the ends of two neighbours may be long."""
+_JOINED_WITHIN = 12.0
+"""Spacings that the way along the edge between two neighbours may be long."""
 _LEAST_MM = 1e-6
 _GRAZE = 1e-6
 
@@ -34,76 +37,81 @@ def hatched(area: BaseGeometry, angle_rad: float, spacing_mm: float, *, is_zigza
     )
     shapely.prepare(level)
     parts, row = shapely.get_parts(shapely.intersection(across, level), return_index=True)
-    ends = [np.asarray(part.coords)[[0, -1], :2] for part in parts]
-    segments = [
-        (int(at), np.sort(end[:, 0])) for at, end in zip(row, ends, strict=True) if np.ptp(end[:, 0]) > _LEAST_MM
-    ]
-    inside = level.buffer(_GRAZE * spacing_mm)  # ends lie on the edge, but for rounding
-    shapely.prepare(inside)
-    chains = _chained(segments, heights, inside, spacing_mm, is_zigzag)
+    there = ~shapely.is_empty(parts)  # rows that miss the area
+    parts, row = parts[there], row[there]
+    ends = np.array([np.sort(np.asarray(part.coords)[[0, -1], 0]) for part in parts]).reshape(-1, 2)
+    is_line = np.ptp(ends, axis=1) > _LEAST_MM
+    spans = _Spans(row[is_line], ends[is_line], heights[row[is_line]])
+    chains = _zigzags(spans, level, spacing_mm) if is_zigzag else _meanders(spans, level, spacing_mm)
     return [chain @ turn for chain in chains]
 
 
-def _chained(
-    segments: list[tuple[int, FloatArray]], heights: FloatArray, area: BaseGeometry, spacing_mm: float, is_zigzag: bool
-) -> list[FloatArray]:
-    """Segments joined to and fro, each to the nearest of the next row that it can be joined to inside the area."""
-    by_row: dict[int, list[int]] = {}
-    for index, (row, _) in enumerate(segments):
-        by_row.setdefault(row, []).append(index)
-    is_used = np.zeros(len(segments), dtype=np.bool_)
+@dataclass(frozen=True, eq=False, slots=True)
+class _Spans:
+    """What of each row is in the area. row: (n,) ascending; x: (n, 2) left and right end; y: (n,)."""
+
+    row: IntArray
+    x: FloatArray
+    y: FloatArray
+
+    @property
+    def ends(self) -> FloatArray:
+        """(2 n, 2) left and right end of one after the other."""
+        return np.column_stack((self.x.ravel(), np.repeat(self.y, 2)))
+
+    def of_next_row(self, span: int) -> range:
+        """Those of the row after that of a span."""
+        return range(*np.searchsorted(self.row, (self.row[span] + 1, self.row[span] + 2)).tolist())
+
+
+def _meanders(spans: _Spans, area: BaseGeometry, spacing_mm: float) -> list[FloatArray]:
+    """Spans drawn to and fro, each led along the edge to the nearest of the next row."""
+    ends = spans.ends
+    edge = Edge(area, ends)
+    is_used = np.zeros(len(spans.row), dtype=np.bool_)
     chains = []
-    for first in range(len(segments)):
+    for first in range(len(spans.row)):
         if is_used[first]:
             continue
         is_used[first] = True
-        row, (left, right) = segments[first]
-        points = [(left, heights[row])] if is_zigzag else [(left, heights[row]), (right, heights[row])]
-        side, current = 1, first
-        if is_zigzag:
-            side = 0
+        points, last = [ends[2 * first : 2 * first + 2]], 2 * first + 1
         while True:
-            following = _next(
-                segments, by_row, current, points[-1], heights, area, spacing_mm, is_used, side, is_zigzag
-            )
-            if following is None:
+            beside = [2 * span + last % 2 for span in spans.of_next_row(last // 2) if not is_used[span]]
+            if not beside:
                 break
-            is_used[following] = True
-            row, span = segments[following]
-            if is_zigzag:
-                side = 1 - side
-                points.append((span[side], heights[row]))
-            else:
-                points += [(span[side], heights[row]), (span[1 - side], heights[row])]
-                side = 1 - side
-            current = following
-        if is_zigzag and len(points) == 1:  # a segment by itself
-            row, (left, right) = segments[first]
-            points = [(left, heights[row]), (right, heights[row])]
-        chains.append(np.array(points))
+            lengths = [edge.length(last, end) for end in beside]
+            nearest = int(np.argmin(lengths))
+            if lengths[nearest] > _JOINED_WITHIN * spacing_mm:
+                break
+            end = beside[nearest]
+            is_used[end // 2] = True
+            points += [edge.way(last, end), ends[[end, end ^ 1]]]
+            last = end ^ 1
+        chains.append(np.concatenate(points))
     return chains
 
 
-def _next(
-    segments: list[tuple[int, FloatArray]],
-    by_row: dict[int, list[int]],
-    current: int,
-    place: tuple[float, float],
-    heights: FloatArray,
-    area: BaseGeometry,
-    spacing_mm: float,
-    is_used: BoolArray,
-    side: int,
-    is_zigzag: bool,
-) -> int | None:
-    row, _ = segments[current]
-    best = None
-    for index in by_row.get(row + 1, ()):
-        if is_used[index]:
+def _zigzags(spans: _Spans, area: BaseGeometry, spacing_mm: float) -> list[FloatArray]:
+    """Lines from one end of a span to the other end of one of the next row, where the way there stays inside."""
+    ends = spans.ends
+    inside = area.buffer(_GRAZE * spacing_mm)  # ends lie on the edge, but for rounding
+    shapely.prepare(inside)
+    is_used = np.zeros(len(spans.row), dtype=np.bool_)
+    chains = []
+    for first in range(len(spans.row)):
+        if is_used[first]:
             continue
-        to = segments[index][1][1 - side if is_zigzag else side]
-        way = shapely.LineString((place, (to, heights[row + 1])))
-        short = way.length <= _JOINED_WITHIN * spacing_mm or is_zigzag
-        if short and (best is None or way.length < best[0]) and area.covers(way):
-            best = (way.length, index)
-    return None if best is None else best[1]
+        is_used[first] = True
+        found = [2 * first]
+        while True:
+            across = [2 * span + 1 - found[-1] % 2 for span in spans.of_next_row(found[-1] // 2) if not is_used[span]]
+            ways = shapely.linestrings([ends[[found[-1], end]] for end in across]) if across else np.empty(0)
+            clear = shapely.covers(inside, ways)
+            if not clear.any():
+                break
+            found.append(across[int(np.argmin(np.where(clear, shapely.length(ways), np.inf)))])
+            is_used[found[-1] // 2] = True
+        if len(found) == 1:  # a span by itself
+            found.append(2 * first + 1)
+        chains.append(ends[found])
+    return chains
