@@ -25,6 +25,7 @@ _DOUBLE = (FillKind.CROSS, FillKind.ZIGZAG)
 """Fills whose lines cross or meet: of two hatches that each leave a share of the paper free, the square of it stays."""
 _WIDER = 1.5
 """How much wider than the pen's line a stroke has to be to be drawn more than once."""
+_NO_INSET_MM = 1e-6
 _CHORD_MM = 0.01
 _CAPS: dict[str, Literal["flat", "round", "square"]] = {"round": "round", "square": "square"}
 _JOINS: dict[str, Literal["mitre", "round", "bevel"]] = {"round": "round", "bevel": "bevel"}
@@ -52,7 +53,7 @@ def fill_lines(drawing: Drawing, options: FillOptions, svg_to_arm: FloatArray) -
         for area in areas(drawing.scene, drawing.reading, svg_to_arm):
             spacing_mm = _spacing_mm(options, area.colour)
             turned = _GOLDEN_DEG * angles.setdefault(area.colour, len(angles)) if options.by is FillBy.COLOUR else 0.0
-            inner = area.shape.buffer(-options.from_edge_mm) if options.from_edge_mm else area.shape
+            inner = area.shape.buffer(-options.from_edge_mm) if options.from_edge_mm > _NO_INSET_MM else area.shape
             lines = _lines(inner, options.kind, np.radians(options.angle_deg + turned), spacing_mm)
             found += [_outline(line, svg_to_arm, back, area.layer, area.colour) for line in lines]
     mm_per_unit = scale_of(svg_to_arm)
