@@ -147,3 +147,8 @@ def test_a_name_that_is_no_file_is_told_in_one_line(
     told = capsys.readouterr()
     assert told.err.startswith("plan: error: ") and told.err.count("\n") == 1 and told.out == ""
     assert sorted(path.name for path in desk.iterdir()) == before
+
+
+def test_standard_input_is_read_once(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "-", "--drawing", "-"]) == 2
+    assert "standard input can be read only once" in capsys.readouterr().err

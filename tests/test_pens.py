@@ -38,7 +38,7 @@ def drawing_of(*outlines: tuple[str, tuple[int, int, int], float]) -> Drawing:
 
 LAYERED = drawing_of(
     ("1 sky", (255, 0, 0), 0.5),
-    ("2 sea +S50", (0, 0, 255), 0.5),
+    ("2+S50 sea", (0, 0, 255), 0.5),
     ("%3 grid", (0, 0, 0), 0.2),
     ("1 sky", (0, 0, 250), 1.0),
 )
@@ -49,8 +49,16 @@ LAYERED = drawing_of(
     [
         ("sky", LayerName(None, True, False, 1.0, 0.0, None)),
         ("%3 grid", LayerName(3, False, False, 1.0, 0.0, None)),
-        ("!12 gold +S50 +D500+h40", LayerName(12, True, True, 0.5, 0.5, 40)),
-        ("4+S999 a", LayerName(4, True, False, 1.1, 0.0, None)),
+        ("!12 +S50 +D500+h40 gold", LayerName(12, True, True, 0.5, 0.5, 40)),
+        ("4+S999 a", LayerName(4, True, False, 1.0, 0.0, None)),
+        ("  +s30+S70+S0b", LayerName(None, True, False, 0.7, 0.0, None)),
+        ("%5 +D20", LayerName(5, False, False, 1.0, 0.02, None)),
+        ("5%name", LayerName(5, True, False, 1.0, 0.0, None)),
+        ("%5 name", LayerName(5, False, False, 1.0, 0.0, None)),
+        (" ! sea", LayerName(None, True, True, 1.0, 0.0, None)),
+        ("wow!", LayerName(None, True, False, 1.0, 0.0, None)),
+        ("C+S50 and A+D4", LayerName(None, True, False, 1.0, 0.0, None)),
+        ("7 sky +S50", LayerName(7, True, False, 1.0, 0.0, None)),
         ("", LayerName(None, True, False, 1.0, 0.0, None)),
     ],
 )
@@ -64,13 +72,13 @@ def test_any_name_is_a_name(name: str) -> None:
 
 
 def test_layers_are_chosen_by_name_and_number() -> None:
-    assert [outline.layer for outline in chosen_layers(LAYERED, None).outlines] == ["1 sky", "2 sea +S50", "1 sky"]
+    assert [outline.layer for outline in chosen_layers(LAYERED, None).outlines] == ["1 sky", "2+S50 sea", "1 sky"]
     assert chosen_layers(LAYERED, None).skipped == {"layer that is not to be plotted (%)": 1}
-    assert [outline.layer for outline in chosen_layers(LAYERED, ("3", "2 sea +S50")).outlines] == [
-        "2 sea +S50",
+    assert [outline.layer for outline in chosen_layers(LAYERED, ("3", "2+S50 sea")).outlines] == [
+        "2+S50 sea",
         "%3 grid",
     ]
-    with pytest.raises(UsageError, match="has no layer 'moon'; it has 1 sky, 2 sea"):
+    with pytest.raises(UsageError, match=r"has no layer 'moon'; it has 1 sky, 2\+S50 sea"):
         chosen_layers(LAYERED, ("1", "moon"))
 
 
@@ -103,7 +111,7 @@ def test_pens_draw_what_is_nearest_to_them_in_their_own_order() -> None:
 
 
 def test_layers_go_to_the_pens_that_name_them() -> None:
-    pens = (Pen("ink", layers=("1 sky", "2 sea +S50")), Pen("%3 grid"))
+    pens = (Pen("ink", layers=("1 sky", "2+S50 sea")), Pen("%3 grid"))
     groups = pen_groups(LAYERED, GroupBy.LAYER, pens, 1.0)
     assert [(group.pen.name, group.halts, group.speed_share) for group in groups] == [
         ("ink", True, 1.0),

@@ -60,6 +60,20 @@ def test_a_plan_is_made_with_them_and_the_command_line_goes_before(drawing: Path
     assert sorted(path.name for path in drawing.parent.iterdir()) == ["arms", "line.svg", "plan.toml"]
 
 
+def test_files_are_named_from_where_the_file_of_options_is(drawing: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (drawing.parent / "pens.toml").write_text('[[pen]]\nname = "blue"')
+    (drawing.parent / "plan.toml").write_text(
+        '[options]\npens = "pens.toml"\ndedup = true\n[presets.near]\ndedup = "1mm"'
+    )
+    told = in_force(capsys, str(drawing))
+    assert told["pens"] == ["blue"] and told["dedup"] == 0.05
+    assert in_force(capsys, str(drawing), "--preset", "near")["dedup"] == 1.0
+    assert main(["config"]) == 0
+    assert "None" not in capsys.readouterr().out
+    assert main(["config", "none.svg"]) == 2
+    assert "none.svg: no such drawing" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("text", "fault"),
     [

@@ -9,6 +9,8 @@ from planner.cli.parser import Parser
 from planner.cli.plan import plan_parser
 from planner.cli.preferences import BESIDE, USER_FILE_VARIABLE, preferences_for, user_file, with_preferences
 from planner.cli.terminal import print_lines
+from planner.errors import UsageError
+from planner.pens import Pen
 
 _DESCRIPTION = f"""\
 Say which options a plan would have where the command line says nothing, and where each is said: a file of your own, a
@@ -37,6 +39,8 @@ def config(arguments: list[str]) -> int:
     parser.add_argument("--preset", metavar="NAME", help="with this preset")
     parser.add_argument("--json", action="store_true", help="print it as JSON")
     asked = parser.parse_args(arguments)
+    if asked.drawing and not asked.drawing.exists():
+        raise UsageError(f"{asked.drawing}: no such drawing or folder")
     preferences = preferences_for(asked.drawing)
     in_force, sources = with_preferences(plan_parser(), [str(asked.drawing or "-")], preferences, asked.preset)
     said = {
@@ -54,11 +58,23 @@ def config(arguments: list[str]) -> int:
         [
             f"files: {', '.join(files)}",
             f"presets: {', '.join(preferences.presets()) or 'none'}",
-            *(f"{name:<{width}}  {_plain(value)}  ({where})" for name, (value, where) in said.items()),
+            *(f"{name:<{width}}  {_shown(value)}  ({where})" for name, (value, where) in said.items()),
         ]
     )
     return 0
 
 
+def _shown(value: object) -> object:
+    plain = _plain(value)
+    if plain is None or plain == []:
+        return "not set"
+    return ", ".join(map(str, plain)) if isinstance(plain, list) else plain
+
+
 def _plain(value: object) -> object:
-    return value if value is None or isinstance(value, bool | int | float | str | list | tuple) else str(value)
+    """As JSON has it; pens by their names."""
+    if isinstance(value, list | tuple):
+        return [_plain(one) for one in value]
+    if isinstance(value, Pen):
+        return value.name
+    return value if value is None or isinstance(value, bool | int | float | str) else str(value)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from typing import NoReturn
+from typing import Any, NoReturn
 
+from planner.cli.files import STANDARD_INPUT
 from planner.errors import UsageError
 
 
@@ -22,3 +23,10 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message} (see {self.prog} --help)")
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> tuple[Any, list[str]]:
+        """As of argparse; two files that are both standard input are refused, as it can be read only once."""
+        options, unknown = super().parse_known_args(args, namespace)
+        if list(vars(options).values()).count(STANDARD_INPUT) > 1:
+            self.error("two files are '-', and standard input can be read only once")
+        return options, unknown

@@ -5,8 +5,10 @@
     margin = "1cm"
     [presets.fast]       # with --preset fast
     speed = "8cm/s"
-    [arms]               # names for arm files, relative to this file
+    [arms]               # names for arm files
     my_arm = "arms/my_arm.toml"
+
+Files that are named (arms, pens, font) are looked for from where that file is.
 
 One file is the user's own, one may lie beside the drawing (`plan.toml`). What is said nearer goes before: the command
 line, then a preset, then the file beside the drawing, then the user's own.
@@ -27,6 +29,8 @@ from planner.toml_file import read_toml
 BESIDE = "plan.toml"
 USER_FILE_VARIABLE = "PLAN_CONFIG"
 _TABLES = ("options", "presets", "arms")
+_FILES = frozenset({"font", "pens"})
+"""What names a file: it lies where the file of options says, as arms do."""
 _NEVER = frozenset({"help", "version", "output", "preset", "report"})
 """What is said each time."""
 
@@ -53,11 +57,11 @@ class Preferences:
     def arms(self) -> dict[str, Path]:
         return {name: path for file in reversed(self.files) for name, path in file.arms.items()}
 
-    def said(self, preset: str | None) -> Iterator[tuple[str, str, object]]:
-        """Where it is said, the option, and its value; what goes before comes last. Errors: UsageError for a preset
-        that there is not."""
+    def said(self, preset: str | None) -> Iterator[tuple[str, Path, str, object]]:
+        """Where it is said, the folder of that file, the option, and its value; what goes before comes last. Errors:
+        UsageError for a preset that there is not."""
         for file in reversed(self.files):
-            yield from ((str(file.path), option, value) for option, value in file.options.items())
+            yield from ((str(file.path), file.path.parent, option, value) for option, value in file.options.items())
         if preset is None:
             return
         known = [file for file in reversed(self.files) if preset in file.presets]
@@ -67,7 +71,7 @@ class Preferences:
             raise UsageError(f"there is no preset '{preset:.40}' in {files}; presets: {there}")
         for file in known:
             where = f"{file.path}, preset {preset}"
-            yield from ((where, option, value) for option, value in file.presets[preset].items())
+            yield from ((where, file.path.parent, option, value) for option, value in file.presets[preset].items())
 
 
 def user_file() -> Path:
@@ -97,8 +101,10 @@ def with_preferences(
     """The options of `arguments` with what people prefer in the place of defaults, and where each of those is said, by
     the option's name. Errors: UsageError."""
     sources: dict[str, str] = {}
-    for where, option, value in preferences.said(preset):
+    for where, folder, option, value in preferences.said(preset):
         action = _action(parser, where, option)
+        if action.dest in _FILES and isinstance(value, str):
+            value = str(folder / Path(value).expanduser())
         parser.set_defaults(**{action.dest: _value(action, where, option, value)})
         sources[action.dest] = where
     options = parser.parse_args(arguments)
@@ -126,11 +132,14 @@ def _value(action: argparse.Action, where: str, option: str, value: object) -> o
         if not isinstance(value, bool):
             raise UsageError(f"{where}: {option} is true or false, not {value!r:.40}")
         return value
+    if action.nargs == "?" and value is True:
+        return action.const
     parts = value if isinstance(value, list) else [value]
-    if len(parts) != (action.nargs or 1) or not all(
+    n_parts = action.nargs if isinstance(action.nargs, int) else 1
+    if len(parts) != n_parts or not all(
         isinstance(part, str | int | float) and not isinstance(part, bool) for part in parts
     ):
-        wanted = f"{action.nargs} values in brackets" if action.nargs else "a text or a number"
+        wanted = f"{n_parts} values in brackets" if n_parts > 1 else "a text or a number"
         raise UsageError(f"{where}: {option} is {wanted}, not {value!r:.40}")
     try:
         read = [action.type(str(part)) if callable(action.type) else str(part) for part in parts]
@@ -139,7 +148,7 @@ def _value(action: argparse.Action, where: str, option: str, value: object) -> o
     for one in read:
         if action.choices is not None and one not in action.choices:
             raise UsageError(f"{where}: {option} is one of {', '.join(map(str, action.choices))}, not {one!r:.40}")
-    return read if action.nargs else read[0]
+    return read if n_parts > 1 else read[0]
 
 
 def _read(path: Path) -> PreferenceFile:
