@@ -49,6 +49,18 @@ FIRST_HOUR = {
 """What each is made of, of what the first hour leaves."""
 SYMPTOMS = "symptoms.png"
 PAGE = ("page-sheet.png", "page-arm.png", "page-joints.png", "page-phone.png")
+LANTERN = ROOT / "examples" / "lantern.svg"
+FILLS = {
+    "fills.png": [
+        ["--fill", "hatch"],
+        ["--fill", "cross", "--fill-angle", "30"],
+        ["--fill", "zigzag"],
+        ["--fill", "contour"],
+        ["--fill", "spiral", "--stroke-width", "passes"],
+        ["--fill", "hatch", "--fill-by", "lightness", "--fill-spacing", "0.6mm"],
+    ],
+}
+"""What follows `plan examples/lantern.svg` for each part of a picture."""
 _WIDTH_PX, _COLOURS, _QUALITY = 1000, 256, 70
 
 
@@ -57,7 +69,7 @@ def make(names: list[str]) -> None:
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         _run([str(GARDEN), "-o", "traj.csv", "--quiet"])
-        wanted = names or [*PLOTS, *COMPARISONS, *FIRST_HOUR, SYMPTOMS, *PAGE]
+        wanted = names or [*PLOTS, *COMPARISONS, *FIRST_HOUR, *FILLS, SYMPTOMS, *PAGE]
         if any(name in FIRST_HOUR for name in wanted):
             from first_hour import first_hour
 
@@ -76,8 +88,27 @@ def make(names: list[str]) -> None:
                 _small(Path(FIRST_HOUR[name]), IMAGES / name)
             elif name in PAGE:
                 _small(Path(name), IMAGES / name)
+            elif name in FILLS:
+                _fills(FILLS[name], IMAGES / name)
             else:
                 _symptoms(IMAGES / name)
+
+
+def _fills(parts: list[list[str]], target: Path) -> None:
+    """What each part draws, two beside each other."""
+    from PIL import Image
+
+    sheets = []
+    for number, options in enumerate(parts):
+        _run([str(LANTERN), "-o", "fill.csv", "--quiet", "--fill-spacing", "1.2mm", *options])
+        _run(["plot", "fill.csv", "--kind", "sheet", "--dpi", "100", "-o", f"fill{number}.png"])
+        sheets.append(Image.open(f"fill{number}.png").convert("RGB"))
+    width, height = sheets[0].size
+    together = Image.new("RGB", (2 * width, height * ((len(sheets) + 1) // 2)), "white")
+    for number, sheet in enumerate(sheets):
+        together.paste(sheet, (width * (number % 2), height * (number // 2)))
+    together.save("fills.png")
+    _small(Path("fills.png"), target)
 
 
 def _symptoms(target: Path) -> None:

@@ -63,8 +63,15 @@ examples:
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
   plan flower.svg --paper a6 --align top-left      at the top left of a sheet
   plan map.svg --list-layers                       what there is to draw, with colours
-  plan map.svg --by colour --report map            a pen for each colour, with a halt to change it
-  plan logo.svg --fill hatch --preset fast         filled shapes hatched, with options of yours (plan config)
+  plan map.svg --layers sea,2 --by layer           two of them, and a halt for the pen between
+  plan map.svg --by colour --pens pens.toml        the pens that there are, each for the colours nearest to it
+  plan map.svg --by width --split                  a trajectory for each width of stroke
+  plan logo.svg --fill hatch --fill-spacing 0.6mm  areas filled, and not their edges alone
+  plan logo.svg --fill spiral --fill-by lightness --stroke-width passes
+  plan old.svg --join 0.2mm --dedup --simplify 0.1mm --min-length 1mm
+  plan ink.svg --passes 2 --keep-order             twice over each line, in the order of the file
+  plan flower.svg --preset fast                    options that you gave a name (plan config)
+  vpype read x.svg write -f svg - | plan - | plan run -
   plan stamp.svg --at 20 15 --copies 3x2           six of them at true size, the first 20 mm right and 15 mm down
 
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
