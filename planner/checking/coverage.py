@@ -21,6 +21,7 @@ from planner.checking.wanted import WantedLines, wanted_lines
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
+from planner.drawing.image.lines import image_lines
 from planner.errors import UsageError
 from planner.head import NOTHING_LEFT_OUT, LeftOut
 from planner.trajectory import Trajectory
@@ -79,7 +80,8 @@ def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: Floa
 def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
     """The lines of what the header tells that was drawn, as often as it was."""
     affine, copies = trajectory.svg_to_arm, trajectory.placement.copies
-    is_wanted = told_by(trajectory.chosen, drawing, affine)
+    of_pictures = image_lines(drawing, affine) if drawing.reading.image.is_on else []
+    is_wanted = told_by(trajectory.chosen, replace(drawing, outlines=(*drawing.outlines, *of_pictures)), affine)
     if not trajectory.fill.draws_anything:
         lines = wanted_lines(drawing, affine, FLATTENING_MM, is_wanted)
     else:
@@ -94,6 +96,9 @@ def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
         )
         filling = [line for line in fill_lines(drawing, trajectory.fill, affine) if is_wanted(line)]
         within = flatten_all(filling, affine, FLATTENING_MM)
+        lines = WantedLines([*lines.allowed, *within], [*lines.required, *within])
+    if of_pictures:
+        within = flatten_all([line for line in of_pictures if is_wanted(line)], affine, FLATTENING_MM)
         lines = WantedLines([*lines.allowed, *within], [*lines.required, *within])
     if copies is None:
         return lines

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
@@ -40,14 +42,19 @@ def hatched(area: BaseGeometry, angle_rad: float, spacing_mm: float, *, is_zigza
     ]
     inside = level.buffer(_GRAZE * spacing_mm)  # ends lie on the edge, but for rounding
     shapely.prepare(inside)
-    chains = _chained(segments, heights, inside, spacing_mm, is_zigzag)
+    chains = chained(segments, heights, inside.covers, spacing_mm, is_zigzag)
     return [chain @ turn for chain in chains]
 
 
-def _chained(
-    segments: list[tuple[int, FloatArray]], heights: FloatArray, area: BaseGeometry, spacing_mm: float, is_zigzag: bool
+def chained(
+    segments: list[tuple[int, FloatArray]],
+    heights: FloatArray,
+    may_draw: Callable[[shapely.LineString], bool],
+    spacing_mm: float,
+    is_zigzag: bool = False,
 ) -> list[FloatArray]:
-    """Segments joined to and fro, each to the nearest of the next row that it can be joined to inside the area."""
+    """Segments, each the row that it is on and where it begins and ends, joined to and fro, each to the nearest of the
+    next row that it can be joined to by a line that may be drawn. heights: of the rows."""
     by_row: dict[int, list[int]] = {}
     for index, (row, _) in enumerate(segments):
         by_row.setdefault(row, []).append(index)
@@ -64,7 +71,7 @@ def _chained(
             side = 0
         while True:
             following = _next(
-                segments, by_row, current, points[-1], heights, area, spacing_mm, is_used, side, is_zigzag
+                segments, by_row, current, points[-1], heights, may_draw, spacing_mm, is_used, side, is_zigzag
             )
             if following is None:
                 break
@@ -90,7 +97,7 @@ def _next(
     current: int,
     place: tuple[float, float],
     heights: FloatArray,
-    area: BaseGeometry,
+    may_draw: Callable[[shapely.LineString], bool],
     spacing_mm: float,
     is_used: BoolArray,
     side: int,
@@ -104,6 +111,6 @@ def _next(
         to = segments[index][1][1 - side if is_zigzag else side]
         way = shapely.LineString((place, (to, heights[row + 1])))
         short = way.length <= _JOINED_WITHIN * spacing_mm or is_zigzag
-        if short and (best is None or way.length < best[0]) and area.covers(way):
+        if short and (best is None or way.length < best[0]) and may_draw(way):
             best = (way.length, index)
     return None if best is None else best[1]
