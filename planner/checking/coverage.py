@@ -17,6 +17,7 @@ from planner.checking.mapping import map_findings, map_trouble
 from planner.checking.pen import place_of
 from planner.checking.polyline import DenseLines, dense_lines, joined_lines
 from planner.checking.repeats import most_repeated
+from planner.checking.tone import tone_findings
 from planner.checking.wanted import WantedLines, wanted_lines
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
@@ -62,6 +63,7 @@ def drawing_findings(
         _extra(trajectory, pen_lines, off_mm, sweeps, limit, affine),
         _missing(trajectory, lines.required, pen_lines, limit + work.dedup_mm, affine),
         _drawn_once(trajectory, allowed, pen_lines[0], off_mm[0] > limit, sweeps[0], limit, affine),
+        *tone_findings(trajectory, drawing, pen_lines[0], _outlines(trajectory, drawing)),
     ]
 
 
@@ -104,6 +106,12 @@ def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
         return lines
     steps = copies.steps_mm
     return WantedLines(*([line + step for step in steps for line in some] for some in (lines.allowed, lines.required)))
+
+
+def _outlines(trajectory: Trajectory, drawing: Drawing) -> list[FloatArray]:
+    """The lines that are no picture's, where there are pictures to be held against these."""
+    is_wanted = drawing.reading.image.is_on
+    return flatten_all(drawing.outlines, trajectory.svg_to_arm, FLATTENING_MM) if is_wanted else []
 
 
 def _bridges(lines: Sequence[FloatArray], gap_mm: float) -> list[FloatArray]:

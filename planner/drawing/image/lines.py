@@ -24,7 +24,7 @@ from planner.drawing.subpath import polyline
 from planner.drawing.transforms import IDENTITY
 from planner.errors import DrawingError
 
-_GRID = {ImageStyle.HATCH: 1 / 3, ImageStyle.SCRIBBLE: 1 / 2, ImageStyle.STIPPLE: 1 / 2}
+_GRID = {ImageStyle.HATCH: 3, ImageStyle.SCRIBBLE: 2, ImageStyle.STIPPLE: 2}
 """Cells to the finest detail."""
 _CORNER = 0.125
 """Of the finest detail: what rounded corners are off."""
@@ -39,8 +39,8 @@ def with_images(drawing: Drawing, user_to_mm: FloatArray) -> Drawing:
         options = drawing.reading.image
         raise DrawingError(
             drawing.source,
-            f"nothing to draw: --image {options.style} finds nothing in the picture that is dark, and {options.least_mm:g}"
-            " mm across or more on the paper (try hatch, or a smaller --image-detail or --image-line)",
+            f"nothing to draw: --image {options.style} finds nothing in the picture that is dark, and"
+            f" {options.least_mm:g} mm across or more on the paper (try hatch, or a smaller --image-detail)",
         )
     return replace(drawing, outlines=(*drawing.outlines, *lines)) if lines else drawing
 
@@ -81,7 +81,7 @@ def _curves(picture: SeenPicture, options: ImageOptions) -> list[FloatArray]:
     inner = picture.shape.buffer(-options.line_mm / 2.0)
     if inner.is_empty:
         return []
-    wanted = tones(replace(picture, shape=inner), _GRID[options.style] * options.least_mm, options.ink)
+    wanted = tones(replace(picture, shape=inner), options.least_mm, _GRID[options.style], options.ink)
     if options.style is ImageStyle.HATCH:
         angle_rad = np.radians(options.angle_deg) + np.pi / 2  # counterclockwise from left to right, as with fills
         return [

@@ -13,6 +13,8 @@ from planner.drawing.image.seen import SeenPicture
 from planner.drawing.raster import Darkness, block_means
 
 MOST_CELLS = 4_000_000
+_BLUR = 0.4
+"""Of the finest detail: what a pen's line does to it anyway."""
 LIGHTEST = 0.03
 """Tones that are as good as paper, as with fills."""
 
@@ -43,10 +45,12 @@ def ink_share(darkness: Darkness) -> Darkness:
     return np.asarray(1.0 - light, dtype=np.float32)
 
 
-def tones(picture: SeenPicture, pitch_mm: float, ink: float) -> Tones:
-    """On a grid as fine as that, or coarser where there would be too many cells. ink: the share for black."""
-    from scipy.ndimage import map_coordinates
+def tones(picture: SeenPicture, least_mm: float, cells: int, ink: float) -> Tones:
+    """On a grid of so many cells to the finest detail, or fewer where there would be too many in all; what is finer is
+    blurred. ink: the share for black."""
+    from scipy.ndimage import gaussian_filter, map_coordinates
 
+    pitch_mm = least_mm / cells
     left, low, right, high = picture.shape.bounds
     pitch_mm = max(pitch_mm, float(np.sqrt((right - left) * (high - low) / MOST_CELLS)))
     # Light is what adds up: the mean of a block is taken of shares of ink.
@@ -61,6 +65,6 @@ def tones(picture: SeenPicture, pitch_mm: float, ink: float) -> Tones:
     column = back[0, 0] * x[:, None] + back[0, 1] * y + back[0, 2] - 0.5
     row = back[1, 0] * x[:, None] + back[1, 1] * y + back[1, 2] - 0.5
     values = map_coordinates(shares, [row, column], order=1, mode="nearest")
-    values = np.clip(values, 0.0, 1.0)
+    values = np.clip(gaussian_filter(values, _BLUR * least_mm / pitch_mm, mode="nearest", truncate=3.0), 0.0, 1.0)
     values[values < LIGHTEST] = 0.0
     return Tones(np.float32(ink) * values, corner, pitch_mm)
