@@ -166,10 +166,12 @@ def _with_nodes(
 
 def _with_straight_ends(branch: Branch) -> FloatArray:
     """The points of a branch. Where it ends freely, the skeleton bends to a corner of what is drawn: there it goes
-    straight on, as far as it went."""
+    straight on, as far as it went. What is by itself, and no longer than wide, is a dot."""
     points = branch.points
     if len(points) > 1 and np.all(points[0] == points[-1]):
         return points
+    if branch.nodes == (FREE, FREE) and np.hypot(*np.diff(points, axis=0).T).sum() < 2.0 * branch.half_width:
+        return points.mean(axis=0, keepdims=True)
     if branch.nodes[0] == FREE:
         points = _straight_to_the_end(points[::-1], branch.half_width)[::-1]
     if branch.nodes[1] == FREE:

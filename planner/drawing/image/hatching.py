@@ -40,7 +40,7 @@ def hatching(tones: Tones, shape: BaseGeometry, line_mm: float, least_mm: float,
     begin, end = begin + line_mm / 2, end - line_mm / 2
     ends = np.stack((np.stack((begin, heights[row]), axis=1), np.stack((end, heights[row]), axis=1)), axis=1)
     parts, owner = shapely.get_parts(shapely.intersection(shapely.linestrings(ends), level), return_index=True)
-    is_line = shapely.length(parts) > 0.0
+    is_line = shapely.length(parts) > max(least_mm - line_mm, 0.0)
     spans = [np.sort(np.asarray(part.coords)[[0, -1], 0]) for part in parts[is_line]]
     segments = list(zip(row[owner[is_line]].tolist(), spans, strict=True))
     shapely.prepare(level)
