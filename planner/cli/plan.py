@@ -61,6 +61,7 @@ examples:
   plan city.svg --workers 4                        with four processes; the result does not depend on them
   plan flower.svg --weights sensitivity=0          configurations for speed rather than for fine lines
   plan letter.svg --text outline --font Lora.ttf   letters as the outlines of a font, not as single lines
+  plan photo.jpg --image scribble --image-ink 60%  a picture as one line that never lifts
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
   plan flower.svg --paper a6 --align top-left      at the top left of a sheet
   plan map.svg --list-layers                       what there is to draw, with colours

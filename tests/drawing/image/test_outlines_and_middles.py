@@ -10,9 +10,9 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image, ImageDraw
-from tests.drawing.image.pictures import PX_MM, lines_of
 
 from planner.drawing.image_options import ImageOptions, ImageStyle
+from tests.drawing.image.pictures import PX_MM, lines_of
 
 TRACE = ImageOptions(ImageStyle.TRACE)
 CENTRELINE = ImageOptions(ImageStyle.CENTRELINE)
@@ -84,7 +84,7 @@ def test_the_middle_of_a_drawn_polyline_is_that_within_a_pixel(turns: list[float
         return
     (found,) = lines_of(drawn([(x, y) for x, y in line.tolist()], width=width), CENTRELINE)  # no spurs: it is one
     middle, truth = shapely.LineString(found / PX_MM), shapely.LineString(line)
-    assert middle.hausdorff_distance(truth) < 1.0 + width / 2  # at its ends
+    assert middle.hausdorff_distance(truth) < 1.5 + width / 2  # at its ends
     spread = [middle.interpolate(share, normalized=True).distance(truth) for share in np.linspace(0.0, 1.0, 200)]
     assert np.percentile(spread, 95) < 1.0
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from tests.drawing.image.pictures import PX_MM, covered, file_of, lines_of
 
 from planner.drawing.image_options import ImageOptions, ImageStyle
 from planner.drawing.options import ReadingOptions
 from planner.drawing.source import SvgInMemory
 from planner.drawing.svg import read_drawing
 from planner.errors import PlanError
+from tests.drawing.image.pictures import PX_MM, covered, file_of, lines_of
 
 TONES = [ImageStyle.HATCH, ImageStyle.SCRIBBLE, ImageStyle.STIPPLE]
 LINE_MM = 0.4
