@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 from scipy.spatial import cKDTree
+from shapely.geometry.base import BaseGeometry
 
 from planner.affine import compose, inverse
 from planner.arrays import FloatArray
@@ -62,7 +63,7 @@ def tone_findings(
         places = patches[:, None] + grid
         tone = options.ink * _tone(shape, trajectory.svg_to_arm, places.reshape(-1, 2)).reshape(places.shape[:2])
         distance, _ = ink.query(places.reshape(-1, 2), distance_upper_bound=options.line_mm)
-        covered = (distance <= options.line_mm / 2.0).reshape(places.shape[:2])
+        covered = np.asarray(distance <= options.line_mm / 2.0).reshape(places.shape[:2])
         wanted = tone.mean(axis=1) if options.style is ImageStyle.HATCH else np.minimum(tone.mean(axis=1), _DARKEST)
         errors.append(covered.mean(axis=1) - wanted)
     if not errors:
@@ -76,22 +77,21 @@ def tone_findings(
     return [Finding("tone of pictures", off <= limit, 100.0 * off, 100.0 * limit, "%", remark=remark)]
 
 
-def _frame(shape: Shape, affine: FloatArray) -> shapely.Geometry:
+def _frame(shape: Shape, affine: FloatArray) -> BaseGeometry:
     """A box around the outline of a shape, arm mm."""
     points = np.concatenate([path.beziers.reshape(-1, 2) for path in shape.outline]) @ affine[:, :2].T + affine[:, 2]
     return shapely.box(*points.min(axis=0), *points.max(axis=0))
 
 
-def _seen(shape: Shape, affine: FloatArray) -> shapely.Geometry:
+def _seen(shape: Shape, affine: FloatArray) -> BaseGeometry:
     """The part of a picture that its clips leave, arm mm."""
     corners = shape.outline[0].beziers[:, 0]
     whole = shapely.intersection_all([shapely.Polygon(corners), *shape.clips])
-    return shapely.transform(whole, lambda points: points @ affine[:, :2].T + affine[:, 2])
+    moved: BaseGeometry = shapely.transform(whole, lambda points: points @ affine[:, :2].T + affine[:, 2])
+    return moved
 
 
-def _patches(
-    seen: shapely.Geometry, side_mm: float, above: Sequence[shapely.Geometry], lines: shapely.STRtree
-) -> FloatArray:
+def _patches(seen: BaseGeometry, side_mm: float, above: Sequence[BaseGeometry], lines: shapely.STRtree) -> FloatArray:
     """(n, 2) the low corners of squares that are wholly seen, with no other ink on them."""
     if seen.is_empty:
         return np.empty((0, 2))
@@ -105,7 +105,7 @@ def _patches(
     is_free[lines.query(squares, predicate="intersects")[0]] = False
     if above:
         is_free[shapely.STRtree(above).query(squares, predicate="intersects")[0]] = False
-    free = corners[is_free]
+    free: FloatArray = corners[is_free]
     return free[:: -(-len(free) // _MOST_PATCHES)] if len(free) else free
 
 

@@ -171,7 +171,8 @@ def _with_straight_ends(branch: Branch) -> FloatArray:
     if len(points) > 1 and np.all(points[0] == points[-1]):
         return points
     if branch.nodes == (FREE, FREE) and np.hypot(*np.diff(points, axis=0).T).sum() < 2.0 * branch.half_width:
-        return points.mean(axis=0, keepdims=True)
+        middle: FloatArray = points.mean(axis=0, keepdims=True)
+        return middle
     if branch.nodes[0] == FREE:
         points = _straight_to_the_end(points[::-1], branch.half_width)[::-1]
     if branch.nodes[1] == FREE:
