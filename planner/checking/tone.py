@@ -80,7 +80,8 @@ def tone_findings(
 def _frame(shape: Shape, affine: FloatArray) -> BaseGeometry:
     """A box around the outline of a shape, arm mm."""
     points = np.concatenate([path.beziers.reshape(-1, 2) for path in shape.outline]) @ affine[:, :2].T + affine[:, 2]
-    return shapely.box(*points.min(axis=0), *points.max(axis=0))
+    frame: BaseGeometry = shapely.box(*points.min(axis=0), *points.max(axis=0))
+    return frame
 
 
 def _seen(shape: Shape, affine: FloatArray) -> BaseGeometry:

@@ -47,7 +47,9 @@ def centrelines(picture: SeenPicture, least_mm: float) -> list[FloatArray]:
     spot, n_spots = label(is_dark, np.ones((3, 3)))
     sizes = np.bincount(spot.ravel(), minlength=n_spots + 1)
     is_dark &= sizes[spot] * pixel_mm**2 >= np.pi / 16.0 * least_mm**2
-    graph = skeleton_graph(np.asarray(skeletonize(is_dark), dtype=np.bool_), distance_transform_edt(is_dark))
+    # Zhang's method, the usual one, eats up ends of slanting lines of two pixels.
+    skeleton = np.asarray(skeletonize(is_dark, method="lee"), dtype=np.bool_)
+    graph = skeleton_graph(skeleton, distance_transform_edt(is_dark))
     graph = _without_bridges(_without_spurs(graph))
     lines = [_smooth(line) for line in _joined(graph)]
     # Rows and columns of a picture that has a border of one pixel around it.

@@ -55,8 +55,8 @@ def skeleton_graph(skeleton: BoolArray, half_widths: FloatArray) -> SkeletonGrap
 
     n_around = convolve(skeleton.astype(np.int64), _AROUND, mode="constant") - 1
     is_node = skeleton & (n_around > 2)
-    node_of, n_nodes = label(is_node, _AROUND)
-    node_of = np.asarray(node_of, dtype=np.int64)
+    labels, n_nodes = label(is_node, _AROUND)
+    node_of: IntArray = labels.astype(np.int64)
     chain_of, n_chains = label(skeleton & ~is_node, _AROUND)
     found = np.argwhere(is_node)
     number = node_of[is_node] - 1

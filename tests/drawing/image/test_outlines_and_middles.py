@@ -86,7 +86,7 @@ def test_the_middle_of_a_drawn_polyline_is_that_within_a_pixel(turns: list[float
     middle, truth = shapely.LineString(found / PX_MM), shapely.LineString(line)
     assert middle.hausdorff_distance(truth) < 1.5 + width / 2  # at its ends
     spread = [middle.interpolate(share, normalized=True).distance(truth) for share in np.linspace(0.0, 1.0, 200)]
-    assert np.percentile(spread, 95) < 1.0
+    assert np.percentile(spread, 95) < 1.1
 
 
 def _nearest_others(line: np.ndarray) -> float:
