@@ -15,6 +15,7 @@ from planner.arms.paper_pose import BASE_PLANE, PaperPose
 from planner.counted import counted
 from planner.drawing.copies import Copies
 from planner.drawing.fill_options import NO_FILL, FillOptions, fill_options
+from planner.drawing.image_options import image_options
 from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.errors import TrajectoryFileError, UsageError
 from planner.pens import GroupBy, colour_of, hex_of
@@ -121,6 +122,7 @@ _READING = {
     "crop": _Form(str, str),
     "occlude": _Form(lambda value: "yes" if value else "no", _is_yes),
     "dpi": _Form(lambda value: _shortest(value), float),
+    "image": _Form(str, image_options),
 }
 """The keys that say how the drawing was read, those of `ReadingOptions`; the usual values are not written."""
 

@@ -85,7 +85,7 @@ def plan(
         pens=samples.pens,
         pen_changes=samples.pen_changes,
         chosen=Chosen(settings.layers),
-        reading=settings.reading,
+        reading=drawing.reading,
         fill=settings.fill,
         path_work=PathWork(settings.join_mm, settings.dedup_mm, settings.simplify_mm, settings.passes),
     )

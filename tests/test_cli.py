@@ -674,20 +674,21 @@ def test_a_quiet_check_prints_the_faults_alone(sweep_csv: Path, capsys: pytest.C
 @pytest.mark.parametrize(
     ("start", "what"),
     [
-        (b"\x89PNG\r\n\x1a\n", "a picture (PNG)"),
-        (b"\xff\xd8\xff\xe0", "a picture (JPEG)"),
-        (b"GIF89a", "a picture (GIF)"),
-        (b"%PDF-1.7", "a PDF"),
+        (b"\x89PNG\r\n\x1a\n", "a picture, but it is no whole picture"),
+        (b"\xff\xd8\xff\xe0", "a picture, but it is no whole picture"),
+        (b"GIF89a", "a picture, but it is no whole picture"),
+        (b"8BPS", "this is a picture (Photoshop), not an SVG"),
+        (b"%PDF-1.7", "this is a PDF, not an SVG"),
     ],
 )
-def test_a_picture_is_no_drawing(
+def test_what_is_neither_svg_nor_whole_picture_is_no_drawing(
     start: bytes, what: str, sweep_csv: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     picture = tmp_path / "drawing.svg"
     picture.write_bytes(start + bytes(range(256)))
     for arguments in (["check", str(sweep_csv), "--drawing", str(picture)], [str(picture)]):
         assert main(arguments) == 2
-        assert f"drawing.svg: this is {what}, not an SVG" in _one_line(capsys)
+        assert f"drawing.svg: {what}" in _one_line(capsys)
 
 
 @pytest.mark.parametrize(("count", "words"), [(0, "0 strokes"), (1, "1 stroke"), (2, "2 strokes")])

@@ -87,6 +87,7 @@ def test_examples_are_accepted(made: Plan, tmp_path: Path, monkeypatch: pytest.M
         (tmp_path / f"{name}.svg").write_text(SVG)
     for name in ("my_arm", "my_arm_2"):
         shutil.copy(ROOT / "configs" / "drawing_arm.toml", tmp_path / f"{name}.toml")
+    (tmp_path / "pens.toml").write_text('[[pen]]\nname = "blue"\n')
     (tmp_path / "moves.txt").write_text("show\nquit\n")
     made.trajectory.save(tmp_path / "traj.csv")
     examples = [example.words for example in _examples() if _can_run(example)]

@@ -17,10 +17,12 @@ from planner.checking.mapping import map_findings, map_trouble
 from planner.checking.pen import place_of
 from planner.checking.polyline import DenseLines, dense_lines, joined_lines
 from planner.checking.repeats import most_repeated
+from planner.checking.tone import tone_findings
 from planner.checking.wanted import WantedLines, wanted_lines
 from planner.counted import counted
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
+from planner.drawing.image.lines import image_lines
 from planner.errors import UsageError
 from planner.head import NOTHING_LEFT_OUT, LeftOut
 from planner.trajectory import Trajectory
@@ -61,6 +63,7 @@ def drawing_findings(
         _extra(trajectory, pen_lines, off_mm, sweeps, limit, affine),
         _missing(trajectory, lines.required, pen_lines, limit + work.dedup_mm, affine),
         _drawn_once(trajectory, allowed, pen_lines[0], off_mm[0] > limit, sweeps[0], limit, affine),
+        *tone_findings(trajectory, drawing, pen_lines[0], _outlines(trajectory, drawing)),
     ]
 
 
@@ -79,7 +82,8 @@ def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: Floa
 def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
     """The lines of what the header tells that was drawn, as often as it was."""
     affine, copies = trajectory.svg_to_arm, trajectory.placement.copies
-    is_wanted = told_by(trajectory.chosen, drawing, affine)
+    of_pictures = image_lines(drawing, affine) if drawing.reading.image.is_on else []
+    is_wanted = told_by(trajectory.chosen, replace(drawing, outlines=(*drawing.outlines, *of_pictures)), affine)
     if not trajectory.fill.draws_anything:
         lines = wanted_lines(drawing, affine, FLATTENING_MM, is_wanted)
     else:
@@ -95,10 +99,19 @@ def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
         filling = [line for line in fill_lines(drawing, trajectory.fill, affine) if is_wanted(line)]
         within = flatten_all(filling, affine, FLATTENING_MM)
         lines = WantedLines([*lines.allowed, *within], [*lines.required, *within])
+    if of_pictures:
+        within = flatten_all([line for line in of_pictures if is_wanted(line)], affine, FLATTENING_MM)
+        lines = WantedLines([*lines.allowed, *within], [*lines.required, *within])
     if copies is None:
         return lines
     steps = copies.steps_mm
     return WantedLines(*([line + step for step in steps for line in some] for some in (lines.allowed, lines.required)))
+
+
+def _outlines(trajectory: Trajectory, drawing: Drawing) -> list[FloatArray]:
+    """The lines that are no picture's, where there are pictures to be held against these."""
+    is_wanted = drawing.reading.image.is_on
+    return flatten_all(drawing.outlines, trajectory.svg_to_arm, FLATTENING_MM) if is_wanted else []
 
 
 def _bridges(lines: Sequence[FloatArray], gap_mm: float) -> list[FloatArray]:

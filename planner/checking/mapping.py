@@ -119,7 +119,10 @@ def _is_flat(affine: FloatArray) -> bool:
 
 
 def _corners(drawing: Drawing, affine: FloatArray) -> FloatArray:
-    """(n, 2) the points that define the drawing's curves, in arm mm."""
-    points = np.concatenate([outline.beziers.reshape(-1, 2) for outline in drawing.outlines])
+    """(n, 2) the points that define the drawing's curves and the frames of its pictures, in arm mm."""
+    shapes = drawing.scene.shapes if drawing.scene is not None else ()
+    frames = [path for shape in shapes if shape.pixels is not None for path in shape.outline]
+    beziers = [outline.beziers for outline in drawing.outlines] + [path.beziers for path in frames]
+    points = np.concatenate([curves.reshape(-1, 2) for curves in beziers])
     corners: FloatArray = points @ affine[:, :2].T + affine[:, 2]
     return corners

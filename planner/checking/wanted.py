@@ -220,5 +220,5 @@ def _without_paper(scene: Scene) -> Sequence[Shape]:
                 for region in (area, *(_moved(clip, scene.user_to_page) for clip in shape.clips))
             )
         if not is_paper:
-            return scene.shapes[index:] if any(rest.lines for rest in scene.shapes[index:]) else scene.shapes
+            return scene.shapes[index:] if any(rest.shows for rest in scene.shapes[index:]) else scene.shapes
     return scene.shapes

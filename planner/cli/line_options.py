@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from planner.cli.quantities import angle_deg, length_mm, names, pens_file, whole_number
+from planner.cli.quantities import angle_deg, length_mm, names, pens_file, scale, whole_number
 from planner.drawing.fill_options import (
     LEAST_SPACING_MM,
     USUAL_SPACING_MM,
@@ -13,6 +13,7 @@ from planner.drawing.fill_options import (
     FillOptions,
     WideStrokes,
 )
+from planner.drawing.image_options import ImageOptions, ImageStyle
 from planner.pens import GroupBy
 from planner.settings import PlanSettings
 
@@ -115,15 +116,73 @@ def add_fill_options(fills: argparse._ArgumentGroup) -> None:
     )
 
 
+def add_image_options(images: argparse._ArgumentGroup) -> None:
+    """The options that say how pictures of pixels become lines."""
+    default = ImageOptions()
+    images.add_argument(
+        "--image",
+        choices=[style.value for style in ImageStyle],
+        default=default.style.value,
+        help="pictures as the outlines of what is dark, as the middle of drawn lines, or as tones: by parallel lines,"
+        " by one line that never lifts, by dots (default: those in an SVG are left out, and one that is the drawing"
+        " itself is hatched)",
+    )
+    images.add_argument(
+        "--image-line",
+        type=length_mm(minimum_mm=LEAST_SPACING_MM),
+        metavar="LENGTH",
+        help=f"width of the pen's line (default: that of the finest of --pens, or {USUAL_SPACING_MM:g} mm)",
+    )
+    images.add_argument(
+        "--image-detail",
+        type=length_mm(minimum_mm=LEAST_SPACING_MM),
+        metavar="LENGTH",
+        help="the finest that is drawn (default: the width of the line)",
+    )
+    images.add_argument(
+        "--image-ink",
+        type=scale,
+        default=default.ink,
+        metavar="SHARE",
+        help="how much of the paper hatch, scribble and stipple cover where the picture is black (default: 100%%)",
+    )
+    images.add_argument(
+        "--image-levels",
+        type=whole_number,
+        default=default.levels,
+        metavar="N",
+        help="tones of which trace draws the outlines (default: %(default)s)",
+    )
+    images.add_argument(
+        "--image-angle", type=angle_deg, default=default.angle_deg, metavar="DEGREES", help="(default: %(default)g)"
+    )
+
+
+def image_of(options: argparse.Namespace) -> ImageOptions:
+    """How pictures are drawn, by options from `add_image_options`. Errors: UsageError."""
+    return ImageOptions(
+        ImageStyle(options.image),
+        _usual_line_mm(options) if options.image_line is None else options.image_line,
+        options.image_detail,
+        options.image_levels,
+        options.image_angle,
+        options.image_ink,
+    )
+
+
 def fill_of(options: argparse.Namespace) -> FillOptions:
     """The fill that options from `add_fill_options` amount to."""
-    widths_mm = [pen.width_mm for pen in options.pens if pen.width_mm]
-    usual_mm = max(min(widths_mm, default=USUAL_SPACING_MM), LEAST_SPACING_MM)
     return FillOptions(
         FillKind(options.fill),
         options.fill_angle,
-        usual_mm if options.fill_spacing is None else options.fill_spacing,
+        _usual_line_mm(options) if options.fill_spacing is None else options.fill_spacing,
         options.fill_inset,
         FillBy(options.fill_by),
         WideStrokes(options.stroke_width),
     )
+
+
+def _usual_line_mm(options: argparse.Namespace) -> float:
+    """The width of the finest of the pens, where there are any."""
+    widths_mm = [pen.width_mm for pen in getattr(options, "pens", ()) if pen.width_mm]
+    return max(min(widths_mm, default=USUAL_SPACING_MM), LEAST_SPACING_MM)

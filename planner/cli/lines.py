@@ -46,12 +46,14 @@ def lines(arguments: list[str]) -> int:
         check_target(target, options.drawing)
     reading = reading_of(options)
 
+    from planner.drawing.image.lines import with_images
     from planner.drawing.plain_lines import as_json, as_svg, plain_lines
     from planner.drawing.svg import read_drawing
     from planner.files import written_aside
 
     with waiting("reading", quiet=options.quiet):
         drawing = read_drawing(options.drawing, options=reading)
+        drawing = with_images(drawing, drawing.user_to_page)
         found = plain_lines(drawing, options.tolerance)
     with waiting("writing", quiet=options.quiet):
         for target, written in ((options.output, as_svg), (options.json, as_json)):

@@ -14,6 +14,7 @@ from planner.cli.interrupts import interrupts_remembered
 from planner.cli.output import check_target
 from planner.cli.parser import Parser
 from planner.cli.plan_options import add_plan_options, preferred, settings_of
+from planner.cli.reading import reading_of
 from planner.cli.report import check_report, write_report_of
 from planner.cli.terminal import print_lines, print_summary, print_warnings, progress, waiting
 from planner.errors import UsageError
@@ -21,6 +22,7 @@ from planner.files import STANDARD
 from planner.progress import of_all_stages
 
 if TYPE_CHECKING:
+    from planner.drawing.options import ReadingOptions
     from planner.trajectory import Trajectory
 
 _CHORD_MM = 0.01
@@ -60,6 +62,7 @@ examples:
   plan city.svg --workers 4                        with four processes; the result does not depend on them
   plan flower.svg --weights sensitivity=0          configurations for speed rather than for fine lines
   plan letter.svg --text outline --font Lora.ttf   letters as the outlines of a font, not as single lines
+  plan photo.jpg --image scribble --image-ink 60%  a picture as one line that never lifts
   plan flower.svg --no-fit --skip-unreachable      at its true size, what is out of reach left out
   plan flower.svg --paper a6 --align top-left      at the top left of a sheet
   plan map.svg --list-layers                       what there is to draw, with colours
@@ -87,7 +90,7 @@ def plan(arguments: list[str]) -> int:
     target: Path = options.output or (Path(STANDARD) if drawing == STANDARD_INPUT else Path(f"{drawing.stem}.csv"))
     if options.list_layers:
         with waiting("reading", quiet=options.quiet):
-            found = _layers(drawing)
+            found = _layers(drawing, reading_of(options))
         print_lines(found)
         return 0
     check_target(target, drawing)
@@ -139,13 +142,15 @@ def _of_pen(target: Path, index: int, part: Trajectory) -> Path:
     return target.with_name(f"{target.stem}_{index}{'_' if name else ''}{name}{target.suffix}")
 
 
-def _layers(drawing_file: Path) -> list[str]:
+def _layers(drawing_file: Path, reading: ReadingOptions) -> list[str]:
     from planner.drawing.flatten import flatten_all
+    from planner.drawing.image.lines import with_images
     from planner.drawing.pen_groups import described
     from planner.drawing.svg import read_drawing
     from planner.polyline_length import polyline_length
 
-    drawing = read_drawing(drawing_file)
+    drawing = read_drawing(drawing_file, options=reading)
+    drawing = with_images(drawing, drawing.user_to_page)
     return described(
         drawing, lambda outlines: sum(map(polyline_length, flatten_all(outlines, drawing.user_to_page, _CHORD_MM)))
     )

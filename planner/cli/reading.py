@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from planner.cli.files import output_file
+from planner.cli.line_options import add_image_options, image_of
 from planner.cli.parser import Parser
 from planner.cli.quantities import number
 from planner.drawing.options import AS_A_BROWSER, CROP_MODES, MAX_DPI, MIN_DPI, TEXT_MODES, ReadingOptions
@@ -38,8 +39,9 @@ def add_reading_options(parser: Parser) -> None:
         metavar="N",
         help="pixels of the drawing that make an inch; old programs meant 72 or 90 (default: %(default)g)",
     )
+    add_image_options(parser.add_argument_group("pictures"))
 
 
 def reading_of(options: argparse.Namespace) -> ReadingOptions:
     """What options from `add_reading_options` amount to. Errors: UsageError."""
-    return ReadingOptions(options.text, options.font, options.crop, options.occlude, options.dpi)
+    return ReadingOptions(options.text, options.font, options.crop, options.occlude, options.dpi, image_of(options))

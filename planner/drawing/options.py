@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
-from planner.checked import number_in
+from planner.checked import number_in, one_of
+from planner.drawing.image_options import NO_IMAGE, ImageOptions, ImageStyle
 from planner.errors import UsageError
 
 TextMode = Literal["single", "outline", "skip"]
@@ -27,6 +28,7 @@ class ReadingOptions:
         crop: What is cut off: ink beyond the "page", as a browser does, or "none".
         occlude: Whether lines under opaque fills that are painted later are left out.
         dpi: Pixels of the drawing that make an inch; old programs meant 72 or 90.
+        image: How pictures of pixels become lines, or the name of a style.
     """
 
     text: TextMode = "single"
@@ -34,6 +36,7 @@ class ReadingOptions:
     crop: CropMode = "page"
     occlude: bool = False
     dpi: float = 96.0
+    image: ImageOptions = NO_IMAGE
 
     def __post_init__(self) -> None:
         for name, value, choices in (("text", self.text, TEXT_MODES), ("crop", self.crop, CROP_MODES)):
@@ -47,6 +50,11 @@ class ReadingOptions:
             if self.text != "outline":
                 raise UsageError(f'a font file goes with text "outline" (--text outline), not "{self.text}"')
             object.__setattr__(self, "font", Path(self.font))
+        image: object = self.image
+        if isinstance(image, str):
+            object.__setattr__(self, "image", ImageOptions(one_of("image", image, ImageStyle)))
+        elif not isinstance(image, ImageOptions):
+            raise UsageError(f"image is an ImageOptions or the name of a style, not {image!r:.40}")
         object.__setattr__(self, "dpi", number_in("dpi", self.dpi, minimum=MIN_DPI, maximum=MAX_DPI))
 
 

@@ -23,7 +23,7 @@ def n_backgrounds(scene: Scene) -> int:
     count = 0
     while count < len(scene.shapes) and _covers_the_page(scene.shapes[count], scene):
         count += 1
-    return count if any(shape.lines for shape in scene.shapes[count:]) else 0
+    return count if any(shape.shows for shape in scene.shapes[count:]) else 0
 
 
 def _covers_the_page(shape: Shape, scene: Scene) -> bool:

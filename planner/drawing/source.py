@@ -1,4 +1,4 @@
-"""The bytes of a drawing: read, unzipped, and known to be no picture. Nothing but this one file is ever read."""
+"""The bytes of a drawing: read, unzipped, and known to be an SVG or a picture that can be drawn."""
 
 from __future__ import annotations
 
@@ -9,18 +9,10 @@ from pathlib import Path
 from planner.errors import DrawingError
 
 SIZE_LIMIT_BYTES = 32 * 1024 * 1024
-_PICTURE = "trace it first (in Inkscape: Path, Trace Bitmap), and save what that gives as an SVG"
+_PICTURE = "export it as a PNG first"
 _DOCUMENT = "export it as an SVG first"
 _OTHER_FORMATS = {
-    b"\x89PNG": ("a picture (PNG)", _PICTURE),
-    b"\xff\xd8\xff": ("a picture (JPEG)", _PICTURE),
-    b"GIF8": ("a picture (GIF)", _PICTURE),
-    b"RIFF": ("a picture (WebP)", _PICTURE),
-    b"II*\0": ("a picture (TIFF)", _PICTURE),
-    b"MM\0*": ("a picture (TIFF)", _PICTURE),
-    b"BM": ("a picture (BMP)", _PICTURE),
     b"8BPS": ("a picture (Photoshop)", _PICTURE),
-    b"\0\0\1\0": ("a picture (icon)", _PICTURE),
     b"%PDF": ("a PDF", _DOCUMENT),
     b"%!PS": ("PostScript", _DOCUMENT),
     b"PK\3\4": ("a ZIP archive", "unpack it, and name the SVG in it"),
@@ -41,7 +33,7 @@ DrawingSource = Path | SvgInMemory
 
 
 def read_source(drawing: DrawingSource) -> bytes:
-    """The XML bytes of an SVG, gzipped or not; DrawingError if there are none or too many."""
+    """The bytes of a drawing, unzipped; DrawingError if there are none or too many, or of a kind that is none."""
     source = drawing.name or str(drawing)
     data = drawing.content if isinstance(drawing, SvgInMemory) else _read_file(drawing)
     if data.startswith(b"\x1f\x8b") and len(data) <= SIZE_LIMIT_BYTES:

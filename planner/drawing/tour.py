@@ -22,7 +22,7 @@ _GAIN = 1e-9
 
 
 def improve(
-    start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, metric: Metric
+    start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, metric: Metric, rounds: int = _ROUNDS
 ) -> tuple[IntArray, BoolArray, bool]:
     """A tour no longer than `tour`, which strokes it runs the other way, and whether the search came to its end, where
     no move is left that gains, rather than to the limit of its rounds or its work.
@@ -33,7 +33,7 @@ def improve(
     if n < 2:
         return tour, np.zeros(n, dtype=np.bool_), True
     search = _Search(start, entries, exits, tour, metric)
-    is_finished = search.run()
+    is_finished = search.run(rounds)
     found = search.tour[1:]
     is_reversed = np.zeros(n, dtype=np.bool_)
     is_reversed[found // 2] = found % 2 == 1
@@ -65,9 +65,9 @@ class _Search:
         self.apart = self._length(self.a, self.b)
         self.work = 0
 
-    def run(self) -> bool:
+    def run(self, rounds: int) -> bool:
         """Whether no move is left that gains."""
-        for _ in range(_ROUNDS):
+        for _ in range(rounds):
             n_moves = self._two_opt_round() + self._or_opt_round()
             if not n_moves:
                 return True

@@ -14,9 +14,10 @@ from planner.affine import compose, rotation
 from planner.arrays import FloatArray, frozen
 from planner.counted import counted
 from planner.drawing.copies import Copies
-from planner.drawing.drawing import Drawing
+from planner.drawing.drawing import Drawing, Outline
 from planner.drawing.fill_options import FillKind
 from planner.drawing.flatten import extent
+from planner.drawing.image_options import ImageStyle
 from planner.errors import DoesNotFit, UsageError
 from planner.head import Placement
 from planner.placement.board import Board, board_of
@@ -63,7 +64,8 @@ def placed(drawing: Drawing, canvas: Canvas, settings: PlanSettings) -> Placed:
     would be beyond the paper or the canvas, unless what is out of reach is left out anyway."""
     turn = compose(rotation(settings.rotate_deg), _MIRROR if settings.mirror else _AS_IT_IS)
     turned = compose(turn, drawing.user_to_page)
-    ink = _Box(*extent(drawing.outlines, turned))
+    pictures = _frames(drawing)
+    ink = _Box(*extent([*drawing.outlines, *pictures], turned))
     box = _page_box(drawing, turn) if settings.place is PlaceKind.PAGE and drawing.has_page else ink
     board = board_of(canvas, settings.paper, settings.orientation, settings.margin_mm, bool(box.size[0] > box.size[1]))
     counts = np.array(settings.copies)
@@ -102,11 +104,26 @@ def placed(drawing: Drawing, canvas: Canvas, settings: PlanSettings) -> Placed:
         from planner.drawing.fill.fill import with_fills
 
         drawing = with_fills(drawing, settings.fill, svg_to_arm)
+    if pictures:
+        from planner.drawing.image.lines import with_images
+
+        drawing = with_images(drawing, svg_to_arm)
     hints = _turning(box.size, cell, factor, settings.rotate_deg) if settings.is_fitted else []
     hints += _filling_hint(drawing) if settings.fill.kind is FillKind.NONE else []
+    if drawing.reading.image.is_on and not settings.reading.image.is_on:
+        hints += [_style_hint(drawing.reading.image.style)]
     width, height = factor * ink.size
     size_mm = float(width), float(height)
     return Placed(svg_to_arm, copies.of(drawing, svg_to_arm), told, factor, size_mm, board, tuple(hints))
+
+
+def _frames(drawing: Drawing) -> list[Outline]:
+    """Around the pictures that are drawn."""
+    if drawing.scene is None or not any(shape.pixels for shape in drawing.scene.shapes):
+        return []
+    from planner.drawing.image.lines import frames
+
+    return frames(drawing)
 
 
 def _page_box(drawing: Drawing, turn: FloatArray) -> _Box:
@@ -169,6 +186,11 @@ def _turning(size: FloatArray, cell: FloatArray, factor: float, rotate_deg: floa
     larger = _filling(size[::-1], cell) / factor
     other_deg = (rotate_deg + 90.0) % 180.0
     return [f"--rotate {other_deg:g} would make it {larger:.2g} times as large"] if larger >= _WORTH_A_HINT else []
+
+
+def _style_hint(style: ImageStyle) -> str:
+    others = ", ".join(other for other in ImageStyle if other not in (style, ImageStyle.NONE))
+    return f"the picture is drawn as with --image {style}; there are {others} too"
 
 
 def _filling_hint(drawing: Drawing) -> list[str]:

@@ -11,6 +11,7 @@ from planner.arrays import FloatArray
 from planner.counted import clock
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
+from planner.drawing.image.lines import with_images
 from planner.plots.ink import draw_inks, inks_of, legend_of
 from planner.plots.look import USUAL, Look
 from planner.plots.paper import paper_panel, paper_patch, paper_sides_mm, pieces, pt_per_mm_of
@@ -63,6 +64,7 @@ def _wanted(trajectory: Trajectory, drawing: Drawing | None) -> tuple[FloatArray
     """The outlines on the paper: lines with a row of NaN after each, and the places of pen taps."""
     if drawing is None:
         return np.empty((0, 2)), np.empty((0, 2))
+    drawing = with_images(drawing, trajectory.svg_to_arm)
     strokes = flatten_all(trajectory.all_of(drawing).outlines, trajectory.svg_to_arm, _FLATTEN_TOLERANCE_MM)
     gap = np.full((1, 2), np.nan)
     lines = [part for stroke in strokes if len(stroke) > 1 for part in (stroke, gap)]

@@ -236,7 +236,14 @@ class Painter:
             clips = self._clips.regions(leaf.place.clips)
             self._shapes.append(Shape((path,), (), _GREY, False, None, clips, leaf.place.layer))
             return
-        self._tree.work.skipped[picture.kind] += 1
+        if picture.pixels is None:
+            self._tree.work.skipped[picture.kind] += 1
+            return
+        rows, columns = picture.pixels.darkness.shape
+        frame = tuple(self._moved([rectangle(0.0, 0.0, columns, rows)], picture.pixels.to_user).values())
+        if frame and self._can_be_seen(leaf.place):
+            clips = self._clips.regions(picture.clips)
+            self._shapes.append(Shape(frame, (), None, False, None, clips, leaf.place.layer, picture.pixels))
 
     def _text(self, leaf: Leaf) -> None:
         runs = glyphs_of(self._tree, leaf, is_area=self._is_mask)

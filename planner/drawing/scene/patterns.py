@@ -124,6 +124,7 @@ def tiled(
                 outline=tuple(path.moved(move) for path in shape.outline),
                 lines=tuple(path.moved(move) for path in shape.lines),
                 clips=(*clips, *(_moved(region, move) for region in regions)),
+                pixels=shape.pixels and replace(shape.pixels, to_user=compose(move, shape.pixels.to_user)),
             )
 
 
@@ -131,7 +132,7 @@ def _is_within(shape: Shape, to_pattern: FloatArray, tile: Box) -> bool:
     """Whether all that a shape draws lies in the tile."""
     x, y, width, height = tile
     slack = 1e-9 * max(width, height)
-    for path in shape.lines:
+    for path in (*shape.lines, *(shape.outline if shape.pixels else ())):
         points = path.beziers @ to_pattern[:, :2].T + to_pattern[:, 2]
         low, high = points.min(axis=(0, 1)), points.max(axis=(0, 1))
         if np.any(low < np.array((x, y)) - slack) or np.any(high > np.array((x + width, y + height)) + slack):

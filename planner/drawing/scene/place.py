@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from planner.arrays import FloatArray
 from planner.drawing.path_data import CURVE_LIMIT
+from planner.drawing.raster import Raster, RasterError
 from planner.drawing.style.style import Style
 from planner.drawing.transforms import Box
 from planner.drawing.xml_tree import Element
@@ -104,13 +106,17 @@ def resource_place(
 
 @dataclass(slots=True)
 class Work:
-    """What has been done so far, against the limits, and what was left out, by kind."""
+    """What has been done so far, against the limits, and what was left out, by kind. folder: where the files are that
+    the drawing may refer to. rasters: the pictures that were read, by their references."""
 
     source: str
+    folder: Path | None = None
+    rasters: dict[str, Raster | RasterError] = field(default_factory=dict)
     skipped: Counter[str] = field(default_factory=Counter)
     n_elements: int = 0
     n_curves: int = 0
     n_subpaths: int = 0
+    n_pictures: int = 0
 
     def element(self, element: Element, inside: Inside | None, nesting: int) -> None:
         """One more that is shown. What a marker shows in a marker, or a pattern in a pattern, counts for more: it

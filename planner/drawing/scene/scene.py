@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -26,11 +27,11 @@ from planner.errors import DrawingError
 MM_PER_INCH = 25.4
 
 
-def read_scene(document: Document, options: ReadingOptions) -> Scene:
-    """Everything that the document shows, on its page. Errors: DrawingError for a page of no size, and for more than
-    the limits allow."""
+def read_scene(document: Document, options: ReadingOptions, folder: Path | None = None) -> Scene:
+    """Everything that the document shows, on its page. folder: of the files that it may refer to. Errors: DrawingError
+    for a page of no size, and for more than the limits allow."""
     check_expansion(document)
-    root, styles, work = document.root, Styles(document), Work(document.source)
+    root, styles, work = document.root, Styles(document), Work(document.source, folder)
     work.skipped.update(document.skipped)
     work.skipped.update(styles.skipped)
     size = own_size(root, styles.of(root, styles.root(FALLBACK), size_for_percentages(root)), options.dpi)
@@ -82,6 +83,8 @@ def _shown(tree: Tree) -> Iterator[Leaf]:
 
 
 def _far_corner(shapes: Sequence[Shape]) -> tuple[float, float]:
-    """The right and the lower end of all lines, where a page without a size ends."""
-    box = box_of_subpaths([path for shape in shapes for path in shape.lines])
+    """The right and the lower end of all lines and pictures, where a page without a size ends."""
+    box = box_of_subpaths(
+        [path for shape in shapes for path in (*shape.lines, *(shape.outline if shape.pixels else ()))]
+    )
     return (box[0] + box[2], box[1] + box[3]) if box is not None else FALLBACK

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from planner.arrays import FloatArray
+from planner.drawing.raster import Darkness
 from planner.drawing.subpath import Subpath
 
 if TYPE_CHECKING:  # Trajectories know of drawings, and are played on computers that have no Shapely.
@@ -37,13 +38,24 @@ class Stroke:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Pixels:
+    """darkness: (rows, columns). to_user: (2, 3), from columns and rows, counted from the outer corner of the first
+    pixel, to user units. opacity: of the whole."""
+
+    darkness: Darkness
+    to_user: FloatArray
+    opacity: float = 1.0
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class Shape:
     """Something painted, in the user units of the outermost `svg`, all transforms applied.
 
     outline: the whole outline, what is filled. lines: what a pen would draw of it: its stroke with its dashes, or else
     the edge of its fill, with the edges that close open subpaths wherever there is a fill; empty where only its fill
     counts (to hide what is below). fill, stroke: None where there is none that can be seen. is_even_odd: the fill rule.
-    clips: regions in user units, all of which cut it. layer: the name of its layer, or "".
+    clips: regions in user units, all of which cut it. layer: the name of its layer, or "". pixels: of a picture, whose
+    frame is the outline; else None.
     """
 
     outline: tuple[Subpath, ...]
@@ -53,6 +65,7 @@ class Shape:
     stroke: Stroke | None
     clips: tuple[BaseGeometry, ...]
     layer: str
+    pixels: Pixels | None = None
 
     @property
     def colour(self) -> Colour:
@@ -64,6 +77,11 @@ class Shape:
     def width(self) -> float:
         """Of its stroke, 0 where its lines are the edge of its fill."""
         return 0.0 if self.stroke is None else self.stroke.width
+
+    @property
+    def shows(self) -> bool:
+        """Whether a pen draws anything of it."""
+        return bool(self.lines) or self.pixels is not None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

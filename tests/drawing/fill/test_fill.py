@@ -80,7 +80,9 @@ def test_any_area_is_covered_and_nothing_else(
     lines = inked(on_paper(read(f'<path fill-rule="{rule}" d="{path}"/>'), options))
     assert lines.difference(inner.buffer(1e-3)).length < 1e-3
     ink = lines.buffer(0.501 * spacing)
-    assert inner.difference(ink).area <= 0.02 * inner.area + spacing * (0.1 * inner.length + spacing)
+    # A sliver that is narrower than the spacing may lie between two rows.
+    slivers = inner.difference(inner.buffer(-0.5 * spacing).buffer(0.5 * spacing)).area
+    assert inner.difference(ink).area <= 0.02 * inner.area + slivers + spacing * (0.1 * inner.length + spacing)
 
 
 @settings(deadline=None, max_examples=30)

@@ -132,8 +132,7 @@ def test_inherited_properties_are_those_that_are_said_once_for_a_group() -> None
 @pytest.mark.parametrize(
     ("start", "expected"),
     [
-        (b"\x89PNG\r\n", "this is a picture (PNG), not an SVG: trace it first"),
-        (b"\xff\xd8\xff\xe0", "this is a picture (JPEG), not an SVG: trace it first"),
+        (b"8BPS\0\1", "this is a picture (Photoshop), not an SVG: export it as a PNG first"),
         (b"%PDF-1.7", "this is a PDF, not an SVG: export it as an SVG first"),
         (b"PK\x03\x04", "this is a ZIP archive, not an SVG: unpack it"),
         (b" \n", "the file is empty"),
