@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any, cast
 
+from planner.cli.files import output_file
 from planner.cli.joints import all_joints
+from planner.cli.output import check_folder_target
 from planner.cli.parser import Parser
 from planner.cli.quantities import angle_deg
 from planner.cli.terminal import print_lines
 from planner.counted import counted
-from planner.errors import PlanError, UsageError
+from planner.errors import OutputError, PlanError, UsageError
 
 if TYPE_CHECKING:
     from planner.arms.arm import Arm
@@ -26,7 +29,10 @@ examples:
   plan arm
   plan arm drawing_arm
   plan arm my_arm.toml --json
+  plan arm my_arm.toml --report my_arm
   plan arm scara --at 0 90 -120 -90 --frame 2"""
+
+_PAGE = "index.html"
 
 
 def arm(arguments: list[str]) -> int:
@@ -48,13 +54,19 @@ def arm(arguments: list[str]) -> int:
         help="with --at: the frame that the Jacobian is expressed in, "
         "base, tool or the number of one between (default: base)",
     )
+    parser.add_argument("--report", type=output_file, metavar="DIR", help="write DIR/index.html, a page about the arm")
     options = parser.parse_args(arguments)
 
     from planner.arms.arm_file import known_arms, load_arm
     from planner.arms.description import arm_description
 
     if options.arm is None:
-        for given, option in ((options.json, "--json"), (options.at, "--at"), (options.frame, "--frame")):
+        for given, option in (
+            (options.json, "--json"),
+            (options.at, "--at"),
+            (options.frame, "--frame"),
+            (options.report, "--report"),
+        ):
             if given:
                 raise UsageError(f"{option} describes one arm: name it (see plan arm)")
         known = [load_arm(name) for name in known_arms()]
@@ -65,6 +77,8 @@ def arm(arguments: list[str]) -> int:
         return _configuration(described, options.at, options.frame or "base", as_json=options.json)
     if options.frame is not None:
         raise UsageError("--frame goes with --at")
+    if options.report:
+        return _report(described, options.report)
     paper, refusal = _paper(described)
     description = arm_description(described) | paper
     if options.json:
@@ -86,6 +100,23 @@ def _configuration(arm: Arm, positions: Sequence[float], frame: str, *, as_json:
         if as_json
         else [f"{arm.name}: {arm.source}", "", *configuration_lines(arm, configuration)]
     )
+    return 0
+
+
+def _report(arm: Arm, folder: Path) -> int:
+    """Errors: OutputError."""
+    check_folder_target(folder, _PAGE)
+    from planner.files import written_aside
+    from planner.report.arm_page import arm_page
+
+    page = arm_page(arm)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(str(folder), error.strerror or str(error)) from error
+    with written_aside(folder / _PAGE) as file:
+        cast("IO[str]", file).write(page)
+    print_lines([f"wrote {folder / _PAGE}"])
     return 0
 
 

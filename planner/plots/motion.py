@@ -58,7 +58,7 @@ class Motion:
         positions = self.trajectory.positions
         joints = self.arm.from_file_units((1 - share) * positions[before] + share * positions[after])
         nodes = np.concatenate(
-            [_nodes(self.arm, joints[first : first + _BLOCK]) for first in range(0, len(joints), _BLOCK)]
+            [arm_nodes(self.arm, joints[first : first + _BLOCK]) for first in range(0, len(joints), _BLOCK)]
         )
         if any(pen.height_mm for pen in self.trajectory.pens):  # whose tip is not where the last link ends
             nodes[:, -1] = (1 - share) * self.tip_mm[before] + share * self.tip_mm[after]
@@ -126,7 +126,7 @@ def seen_from_the_side(nodes_mm: FloatArray) -> FloatArray:
     return seen
 
 
-def _nodes(arm: Arm, joints: FloatArray) -> FloatArray:
+def arm_nodes(arm: Arm, joints: FloatArray) -> FloatArray:
     """(n, n_nodes, 3) in the paper's frame: the base, and for each joint where its axis takes it and where its link
     ends, of all those that ever differ from the one before."""
     frames = chain_frames(arm, joints)

@@ -51,7 +51,7 @@ class Picture:
 
 def sheet_picture(trajectory: Trajectory, tip_mm: FloatArray) -> Picture:
     """The sheet, with which the page opens. tip_mm: (n_samples, 3)."""
-    return _picture(
+    return picture(
         "sheet",
         "The sheet",
         "The paper as it will look: ink in its colours and as wide as the pens draw, seen from behind the arm.",
@@ -61,7 +61,7 @@ def sheet_picture(trajectory: Trajectory, tip_mm: FloatArray) -> Picture:
 
 def expected_picture(prediction: Prediction, heading: str) -> Picture:
     """How well the arm is expected to draw."""
-    return _picture(
+    return picture(
         "accuracy",
         "Expected accuracy",
         "The lines with the band that 95 of 100 arms like this one draw in, where ink may be missing, and what the "
@@ -85,7 +85,7 @@ def pictures(
     lift_mm = arm.pen.lift_mm if settings.lift_mm is None else settings.lift_mm
     canvas_mm = canvas_of(model, settings.canvas, lift_mm).corners_arm_mm
     drawn = joined_while_drawing(trajectory)
-    yield _picture(
+    yield picture(
         "drawing",
         "Drawing",
         "What the pens draw, over what was to be drawn, on the paper in front of the arm, and their way above it.",
@@ -93,25 +93,25 @@ def pictures(
     )
     if drawn.any():
         error_mm = distance_from_drawing(trajectory, drawing, tip_mm)
-        yield _picture(
+        yield picture(
             "speed",
             "Speed",
             "The speed of the pen along its path. It slows down in corners and where joints are at their limits.",
             lambda look: plot_speed(trajectory, tip_mm, account, canvas_mm, reach_mm, look),
         )
-        yield _picture(
+        yield picture(
             "error",
             "Error of the plan",
             "The distance of the planned pen from the drawing, on the paper and along the way.",
             lambda look: plot_error(trajectory, tip_mm, error_mm, settings.tolerance_mm, canvas_mm, reach_mm, look),
         )
-    yield _picture(
+    yield picture(
         "timeline",
         "Where the time goes",
         "When the arm lowers the pen, rests, draws, lifts and travels, told from the height of the tip at the samples.",
         lambda look: plot_timeline(trajectory, tip_mm, arm.pen.clearance_mm, look),
     )
-    yield _picture(
+    yield picture(
         "profiles",
         "Joints over time",
         "Position, velocity, acceleration and jerk of every joint, with the arm's limits.",
@@ -128,7 +128,7 @@ def pictures(
         draw_inks(axes, inks, width_pt / abs(float(np.diff(axes.get_xlim())[0])), zorder=3.0)
         return figure
 
-    yield _picture(
+    yield picture(
         "workspace",
         "Workspace",
         "The drawing on the canvas within the arm's reach; how freely the pen moves there, and how far it strays where "
@@ -137,7 +137,8 @@ def pictures(
     )
 
 
-def _picture(name: str, heading: str, caption: str, figure: Callable[[Look], Figure]) -> Picture:
+def picture(name: str, heading: str, caption: str, figure: Callable[[Look], Figure]) -> Picture:
+    """Drawn for every theme."""
     looks = {theme: Look.of(theme, dpi=_DPI) for theme in Theme}
     return Picture(name, heading, caption, {theme: _address(figure(look), look) for theme, look in looks.items()})
 
