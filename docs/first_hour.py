@@ -7,7 +7,6 @@ on the printed sheet where it brings the pen to the paper, and a camera looks at
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,19 +25,17 @@ from planner.arms.paper_pose import PaperPose
 from planner.arrays import FloatArray
 from planner.cli import main
 from planner.error_model.calibration.files import Record, read_record
-from planner.error_model.prediction import INK_MM
-from planner.error_model.sheet.marks import Mark, read_marks
+from planner.error_model.pattern.touch import Heights
+from planner.error_model.sheet.marks import read_marks
 from planner.error_model.sheet.pdf import write_sheet
 from tests.error_model.photo.rendering import Camera, Ink, drawn_sheet, photograph
+from tests.judge.inking import traces
 from tests.judge.true_arm import TrueArm, random_arm
 
 ARM = "drawing_arm_2022"
 _SEED = 9
 _ROWS, _BEYOND = 41, 1.15
 """Of a curve in the file, and how far it goes beyond the limits of its joint."""
-_LINE_MM, _DOT_MM = 0.4, 0.7
-_SOON_S, _BEFORE_MM = 3.0, 6.0
-"""After the dot, and before where the line begins on an arm that is as its file says."""
 
 
 def first_hour(drawing: Path) -> None:
@@ -50,12 +47,14 @@ def first_hour(drawing: Path) -> None:
     marks, record = read_marks(Path("marks.csv")), read_record(Path("pulses.csv"), arm)
     tip_mm = tips_of(arm, true_arm, record)
     at_marks = np.searchsorted(record.times_s, [mark.t_s for mark in marks])
-    jogged_mm = tip_mm[at_marks, 2].mean()  # with a card, plan jog finds the paper's height
+    depth_mm = Heights.for_arm(arm).reach_mm  # that marks are meant to have
+    jogged_mm = tip_mm[at_marks, 2].mean() + depth_mm  # with a card, plan jog finds the paper's height
     true_arm = paper_under(true_arm, np.array([0.0, 0.0, jogged_mm]), 0.0)
     tip_mm[:, 2] -= jogged_mm
     Path("true.toml").write_text(arm_toml(true_arm), encoding="utf-8")
     layout = write_sheet(Path("sheet.pdf"), arm.name, marks)
-    sheet = drawn_sheet(Path("sheet.pdf"), layout.origin_page_mm, ink_of(tip_mm, record, marks))
+    ink = [Ink(trace.points_mm, trace.width_mm) for trace in traces(tip_mm, record.period_s)]
+    sheet = drawn_sheet(Path("sheet.pdf"), layout.origin_page_mm, ink)
     cv2.imwrite("photo.jpg", photograph(sheet, Camera(tilt_deg=24, roll_deg=3, shadows=1, shadow_depth=0.2)))
     run("measure", "photo.jpg", "--marks", "marks.csv", "-o", "measured.csv", "--picture", "reading.png", "--quiet")
     run("calibrate", ARM, "--record", "pulses.csv", "--marks", "measured.csv", "-o", "my_arm_2.toml")
@@ -99,29 +98,6 @@ def tips_of(arm: Arm, true_arm: Arm, record: Record) -> FloatArray:
         clock.sleep_until(time_s)
         driver.send(position, record.period_s)
     return link_nodes_mm(true_arm, driver.recording.positions)[:, -1]
-
-
-def ink_of(tip_mm: FloatArray, record: Record, marks: Sequence[Mark]) -> list[Ink]:
-    """What the pen leaves of the marks: a dot where it rests, if it is as near the paper as a sprung pen has to be, and
-    its touch-down line from where it comes to the paper. What it leaves on the way from one to the other is left
-    out."""
-    ink = []
-    for mark in marks:
-        at = int(np.searchsorted(record.times_s, mark.t_s))
-        if tip_mm[at, 2] <= INK_MM:
-            ink.append(Ink(tip_mm[at : at + 1, :2], _DOT_MM))
-        if mark.touch_down is None:
-            continue
-        ends = np.array([mark.touch_down.start_mm, mark.touch_down.end_mm])
-        along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-        told = (record.meant_mm - ends[0]) @ along
-        aside = np.abs((record.meant_mm - ends[0]) @ np.array([-along[1], along[0]]))
-        soon = (record.times_s > mark.t_s) & (record.times_s < mark.t_s + _SOON_S)
-        on_line = soon & (aside < 0.05) & (told > -_BEFORE_MM) & (told < float(np.linalg.norm(ends[1] - ends[0])))
-        pressed = tip_mm[on_line & (tip_mm[:, 2] <= 0.0), :2]
-        if len(pressed) > 1:
-            ink.append(Ink(pressed, _LINE_MM))
-    return ink
 
 
 def run(*arguments: str) -> None:

@@ -52,8 +52,9 @@ def _findings(trajectory: Trajectory, arm: Arm) -> Iterator[Finding]:
     yield from rest_at_the_ends(trajectory, arm)
     yield from couplings(trajectory, arm)
     poses = [sweep(trajectory, arm, Interpolation.LINEAR, per_step=1)]
-    yield from on_the_paper(trajectory, poses, _OFF_PAPER_MM)
-    yield from above_the_paper(trajectory, poses, _FELT_MM if trajectory.method == PATTERN else _OFF_PAPER_MM)
+    felt_mm = _FELT_MM if trajectory.method == PATTERN else 0.0
+    yield from on_the_paper(trajectory, poses, _OFF_PAPER_MM, felt_mm)
+    yield from above_the_paper(trajectory, poses, max(felt_mm, _OFF_PAPER_MM))
     yield from links_apart(trajectory, poses, _OFF_PAPER_MM)
 
 

@@ -39,7 +39,7 @@ def check_trajectory(
         return CheckResult((fitting,))
     per_step = points_per_step(trajectory.rate_hz)
     sweeps = [sweep(trajectory, arm, interpolation, per_step) for interpolation in Interpolation]
-    feels = trajectory.method == PATTERN  # for the paper, between strokes, on purpose
+    feels = trajectory.method == PATTERN  # for the paper: its marks are pressed into it, on purpose
     findings = [
         fitting,
         *rest_at_the_ends(trajectory, arm),
@@ -47,8 +47,8 @@ def check_trajectory(
         *rate_limits(trajectory, arm),
         *couplings(trajectory, arm),
         *stroke_order(trajectory),
-        *on_the_paper(trajectory, sweeps, tolerance_mm),
-        *pen_as_the_tip(trajectory, arm, sweeps[0]),
+        *on_the_paper(trajectory, sweeps, tolerance_mm, FELT_MM if feels else 0.0),
+        *([] if feels else pen_as_the_tip(trajectory, arm, sweeps[0])),
         *upright(trajectory, arm, sweeps),
         *above_the_paper(trajectory, sweeps, FELT_MM if feels else tolerance_mm),
         *links_apart(trajectory, sweeps, tolerance_mm),

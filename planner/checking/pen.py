@@ -49,15 +49,17 @@ def stroke_order(trajectory: Trajectory) -> list[Finding]:
     return findings
 
 
-def on_the_paper(trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_mm: float) -> list[Finding]:
-    """Height of the tip while the pen is down, either way."""
+def on_the_paper(
+    trajectory: Trajectory, sweeps: Sequence[Sweep], tolerance_mm: float, pressed_mm: float = 0.0
+) -> list[Finding]:
+    """Height of the tip while the pen is down, either way; it may be as deep as `pressed_mm`."""
     return _worst(
         trajectory,
         sweeps,
         "tip on the paper while the pen is down",
         tolerance_mm,
         "mm",
-        lambda sweep: (np.abs(sweep.tip_mm[:, 2]), sweep.down),
+        lambda sweep: (np.maximum(sweep.tip_mm[:, 2], -sweep.tip_mm[:, 2] - pressed_mm), sweep.down),
     )
 
 

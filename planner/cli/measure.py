@@ -21,9 +21,9 @@ BAR_MM = 150.0
 """What `planner.error_model.sheet.layout` prints; told here too, so that no help has to load that."""
 
 _DESCRIPTION = """\
-Read a photo or a scan of a drawn calibration sheet: where each mark came on the sheet, and, by the touch-down line
-beside it, how high the tip was over the paper. Any phone will do, held so that the whole sheet is in the picture; tilt
-and lens are made up for. The result can as well be written by hand, with a ruler: one row a mark."""
+Read a photo or a scan of a drawn calibration sheet: where each mark came on the sheet, and, by where the ink of its
+stroke begins, how high the tip was over the paper. Any phone will do, held so that the whole sheet is in the picture;
+tilt and lens are made up for. The result can as well be written by hand, with a ruler: one row a mark."""
 
 _EPILOG = """\
 examples:

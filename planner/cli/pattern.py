@@ -11,8 +11,8 @@ from planner.cli.terminal import print_lines
 from planner.errors import UsageError
 
 _DESCRIPTION = """\
-Make a trajectory of marks that tell all errors of an arm apart, and a list of them. Each mark is a dot with a line
-beside it, along which the pen comes down slowly: where ink begins tells how high the pen is. Draw it with plan run
+Make a trajectory of marks that tell all errors of an arm apart, and a list of them. Each mark is where the pen rests at
+the end of a stroke, along which it comes down slowly: where ink begins tells how high the pen is. Draw it with plan run
 --record, measure the marks, and give both to plan calibrate."""
 
 _EPILOG = """\
@@ -75,7 +75,7 @@ def pattern(arguments: list[str]) -> int:
     from planner.trajectory import write_trajectory
 
     arm = load_arm(options.arm)
-    made = make_pattern(arm, options.arm, options.count, options.seed)
+    made = make_pattern(arm, options.arm, options.count, options.seed, on_sheet=options.sheet is not None)
     trajectory = made.trajectory
     played = make_program(
         arm, arm.from_file_units(trajectory.positions), trajectory.stroke, trajectory.rate_hz, park=arm.park

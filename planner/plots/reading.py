@@ -87,7 +87,7 @@ def _marks(axes: Axes, reading: Reading, look: Look) -> None:
         _note(axes, f"{measured.mark.number}", found, colours.ink, look, to_left=True)
     contacts = [measured.contact for measured in reading.measured if measured.contact]
     for index, contact in enumerate(contacts):
-        ends = layout.to_page_mm(contact.ends_mm)
+        ends = layout.to_page_mm(contact.ends_mm / reading.scale)
         axes.plot(
             *ends.T,
             color=colours.limit,

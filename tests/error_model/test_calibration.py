@@ -17,6 +17,7 @@ from planner.error_model.calibration.sheets import rows_of_marks
 from planner.error_model.calibration.summary import as_json, lines, warnings
 from planner.error_model.lag import lagged
 from planner.error_model.model import Told, tips_at
+from planner.error_model.pattern.touch import SLOPE, Heights
 from planner.error_model.prediction import Along, Prediction
 from planner.errors import CalibrationError
 from tests.error_model.conftest import Drawn
@@ -114,9 +115,10 @@ def test_without_heights_it_goes_on_and_says_so(sheet49: Drawn, fresh: Drawn, tr
 
 
 def test_lines_beside_marks_tell_heights(sheet49: Drawn, fresh: Drawn, true_arms: list[TrueArm]) -> None:
-    """A line is seen where ink begins: nothing else of the tip's height is known."""
+    """A stroke is seen where its ink begins: nothing else of the tip's height is known."""
     record = sheet49.record
-    high_mm = np.median(sheet49.tips_mm(true_arms[2])[:, 2])  # as the card trick leaves it
+    reach_mm = Heights.for_arm(sheet49.arm).reach_mm
+    high_mm = np.median(sheet49.tips_mm(true_arms[2])[:, 2]) + reach_mm  # as the card trick leaves it
     pose = true_arms[2].T_sheet_base - np.outer([0, 0, high_mm, 0], [0, 0, 0, 1])
     true = replace(true_arms[2], T_sheet_base=pose)
     tips = sheet49.tips_mm(true)
@@ -130,7 +132,7 @@ def test_lines_beside_marks_tell_heights(sheet49: Drawn, fresh: Drawn, true_arms
         down = np.flatnonzero(way[:, 2] <= 0)
         if len(down) and down[0] > 0:
             along = (touch.end_mm - touch.begin_mm) / np.linalg.norm(touch.end_mm - touch.begin_mm)
-            rows.append((at_s, *(way[down[0], :2] + random.normal(0, 0.2, 2)), *(0.8 * along), mark))
+            rows.append((at_s, *(way[down[0], :2] + random.normal(0, 0.2, 2)), *(SLOPE * along), mark))
     table = np.array(rows)
     assert len(table) > 20
     touches = Touches(table[:, 0], table[:, 1:3], table[:, 3:5], table[:, 5].astype(np.int64))

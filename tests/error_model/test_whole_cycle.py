@@ -14,10 +14,16 @@ from planner.arms.arm import Servo
 from planner.arms.arm_file import arm_file_text, load_arm
 from planner.arms.arm_text import arm_toml
 from planner.cli import main
-from tests.judge.playing import Record, read_record
-from tests.judge.true_arm import random_arm
+from planner.error_model.pattern.touch import Heights
+from tests.error_model.photo.rendering import Camera
+from tests.judge.photographing import Sheet, photograph_sheet, read_well
+from tests.judge.playing import Record, play, read_record
+from tests.judge.true_arm import TrueArm, random_arm
 from tests.judge.verdict import judge, measured
 
+PHOTOGRAPHED = 304
+"""Seed of the arm whose sheets are photographed."""
+FILES = ("pattern.csv", "marks.csv", "sheet.pdf", "pulses.csv", "photo.jpg", "measured.csv")
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 20" fill="none" stroke="black">
 <path d="M0 0H60V20H0ZM0 20L20 0L40 20L60 0"/><circle cx="15" cy="10" r="7"/><path d="M45 3v.01"/></svg>"""
 
@@ -115,6 +121,62 @@ def test_an_arm_without_redundancy_is_calibrated_too(tmp_path: Path, monkeypatch
         return judge(true, read_record(Path("p.csv"))).path_rms
 
     assert off_mm("arm2.toml") < 0.5 < off_mm("arm.toml")
+
+
+def test_photos_of_two_sheets_make_an_arm_draw_whole_lines(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Printed, drawn on with all that a pen leaves which is too high here and too low there, photographed and read."""
+    monkeypatch.chdir(tmp_path)
+    true = random_arm(load_arm("drawing_arm_2022"), np.random.default_rng(PHOTOGRAPHED))
+    known: list[object] = []
+    for k, arm in enumerate(("drawing_arm_2022", "arm1.toml")):
+        sheet = Sheet(f"sheet{k}")
+        pattern, marks, pdf, pulses, photo, measured_marks = map(sheet.file, FILES)
+        made = ("-o", pattern, "--marks", marks, "--sheet", pdf, "--seed", k, "--quiet")
+        command("pattern", "--arm", arm, *made)
+        command("run", pattern, "--arm", arm, "--fast", "--record", pulses, "--quiet")
+        if not k:
+            true = on_usual_height(true, read_record(pulses), marks)
+        photograph_sheet(true, sheet, Camera(), k)
+        command("measure", photo, "--marks", marks, "-o", measured_marks, "--quiet")
+        known += ["--record", pulses, "--marks", measured_marks]
+        command("calibrate", "drawing_arm_2022", *known, "-o", f"arm{k + 1}.toml", "--quiet")
+    second = read_well(true, Sheet("sheet1"))
+    assert second.found >= 0.8 * second.inked and second.astray <= 3
+    Path("drawing.svg").write_text(DRAWING)
+    command("drawing.svg", "--arm", "arm2.toml", "-o", "t.csv", "--quiet")
+    command("run", "t.csv", "--arm", "arm2.toml", "--fast", "--record", "p.csv", "--quiet")
+    verdict = judge(true, read_record(Path("p.csv")))
+    assert verdict.path_rms < 0.5
+    assert verdict.missing <= 0.02
+
+    # One mark that was read five millimetres off is named, and has no say.
+    head, *rows = measured_marks.read_text().splitlines()
+    cells = rows[7].split(",")
+    shift = 5.0
+    x, y = head.split(",").index("x_mm"), head.split(",").index("touch_x_mm")
+    for column in (x, y):
+        cells[column] = f"{float(cells[column]) + shift:.3f}" if cells[column] else ""
+    Path("spoiled.csv").write_text("\n".join([head, *rows[:7], ",".join(cells), *rows[8:]]) + "\n")
+    capsys.readouterr()
+    spoiled = [*known[:-1], "spoiled.csv"]
+    command("calibrate", "drawing_arm_2022", *spoiled, "-o", "arm3.toml", "--quiet")
+    assert f"spoiled.csv: mark {cells[0]} is " in capsys.readouterr().err
+
+
+def on_usual_height(true: TrueArm, record: Record, marks: Path) -> TrueArm:
+    """The arm on a paper that is as high as its pen was set to on average, not higher or lower by several
+    millimetres."""
+    times_s = np.genfromtxt(marks, delimiter=",", names=True)["t_s"]
+    heights = true.tip_mm(play(true, record, times_s))[:, 2]
+    pose = true.T_sheet_base.copy()
+    pose[2, 3] -= np.median(heights) + Heights.for_arm(load_arm("drawing_arm_2022")).reach_mm
+    return replace(true, T_sheet_base=pose)
+
+
+def command(*arguments: object) -> None:
+    assert main([str(argument) for argument in arguments]) == 0
 
 
 def test_what_contradicts_itself_is_refused(

@@ -5,7 +5,7 @@ P before it and noise R, it takes `G P J^T (J P J^T + R)^-1 J P G^T` off the cov
 the trace of that, summed over places all over the paper, in the configurations that drawings are drawn in, and both
 sides of every joint's slack, is what a mark is worth
 (integrated variance, or V-optimality). How joints come to a mark counts: they stand on the side of their slack from
-which the mark before, and the way down, has brought them.
+which the mark before, and the stroke that ends in the mark, has brought them.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def chosen_marks(
     accepts(chosen, next) says whether a mark can follow those that are chosen.
     """
     model = parameters.prior
-    joints, raised = arm.complete(pool.free), arm.complete(pool.raised)
+    joints, begun = arm.complete(pool.free), arm.complete(pool.begun)
     jacobians, by_joint = _jacobians(parameters, joints)
     probes = random.choice(len(pool), min(_PROBES, len(pool)), replace=False)
     goals = _on_sides(
@@ -51,7 +51,7 @@ def chosen_marks(
     chosen: list[int] = []
     banned = np.zeros(len(pool), dtype=np.bool_)
     while len(chosen) < count and not banned.all():
-        came = _dragged(_dragged(standing, raised, model.slack), joints, model.slack)
+        came = _dragged(_dragged(standing, begun, model.slack), joints, model.slack)
         jacobians = _on_sides(parameters, jacobians, by_joint, (came - joints) / model.slack)
         worth = _worth(jacobians, covariance, goals)
         for index in np.argsort(-np.where(banned, -np.inf, worth)).tolist():

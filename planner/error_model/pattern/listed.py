@@ -7,14 +7,13 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.error_model.believed import believed
 from planner.error_model.calibration.parameters import Parameters
-from planner.error_model.chain import tips
-from planner.error_model.model import Standing
+from planner.error_model.model import Told, tips_at
 from planner.error_model.pattern.pattern import Pattern
 from planner.error_model.pattern.touch import SLOPE
 from planner.error_model.sheet.marks import Mark, TouchDown
 from planner.error_model.sheet.modes import with_modes
 
-_DRAWS = 80
+_DRAWS = 200
 
 
 def listed_marks(arm: Arm, pattern: Pattern, approach: int) -> list[Mark]:
@@ -31,12 +30,11 @@ def listed_marks(arm: Arm, pattern: Pattern, approach: int) -> list[Mark]:
         (x0, y0), (x1, y1) = touch.zero_mm.tolist(), touch.end_mm.tolist()
         marks.append(Mark(number, time_s, (place[0], place[1]), TouchDown((x0, y0), (x1, y1), SLOPE, line_s)))
     parameters = Parameters.of(believed(arm), arm)
-    joints = arm.from_file_units(pattern.trajectory.positions[pattern.mark_samples])
+    joints = arm.from_file_units(pattern.trajectory.positions)
     told = np.column_stack([curve.told(joints[:, k]) for k, curve in enumerate(parameters.prior.curves)])
+    change, stands = tips_at(parameters.prior, Told.of(told, pattern.mark_samples))
+    jacobian = parameters.jacobian(parameters.prior, change, stands)
     random = np.random.default_rng(0)
-    side = random.choice((-1.0, 1.0), joints.shape)
-    jacobian = parameters.jacobian(
-        parameters.prior, tips(parameters.prior.geometry, joints), Standing(joints, told, side)
-    )
     vectors = random.normal(size=(_DRAWS, len(parameters.sd))) * parameters.sd
-    return with_modes(marks, np.einsum("nip,mp->mni", jacobian[:, :2], vectors))
+    by_slack = change.tip_mm[:, :2] - pattern.marks_mm
+    return with_modes(marks, by_slack + np.einsum("nip,mp->mni", jacobian[:, :2], vectors))

@@ -1,4 +1,4 @@
-"""A calibration pattern: a trajectory of dots, each with a line beside it that tells the height of the tip."""
+"""A calibration pattern: a trajectory of marks, each the end of a stroke that tells the height of the tip as well."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from planner.error_model.calibration.parameters import Parameters
 from planner.error_model.pattern.candidates import Candidates, candidates
 from planner.error_model.pattern.choice import chosen_marks
 from planner.error_model.pattern.legs import RESTING, slowing_from_rest, straight_leg
-from planner.error_model.pattern.touch import REACH_MM, Touch, ends_of, touch_line
+from planner.error_model.pattern.touch import LIFT_SLOPE, Heights, Touch, touch_line
 from planner.errors import PlanError
 from planner.kinematics.chain import Kinematics
 from planner.kinematics.limits import Limits
@@ -23,15 +23,14 @@ from planner.trajectory import PATTERN, TRAVELLING, Trajectory
 RATE_HZ = 100.0
 _MARGIN_MM = 1.0
 _POOL = 1200
-_DWELL_S = 0.5
-_APART_MM = 4.0
-"""Between dots, and between a dot and another mark's line."""
-_WAYS = np.array([[0.0, 1.0], [0.0, -1.0], [1.0, 0.0], [-1.0, 0.0]])
+_DWELL_S = 1.0
+_APART_MM = 3.5
+"""Between strokes."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Pattern:
-    """trajectory: stroke k is mark k. marks_mm: (m, 2) on the paper. touches: the line of each mark. mark_samples,
+    """trajectory: stroke k is mark k. marks_mm: (m, 2) on the paper. touches: the stroke of each mark. mark_samples,
     zero_samples: (m,) the sample in the middle of each mark's dwell, and that at which its line begins if the tip is
     neither high nor low."""
 
@@ -42,12 +41,14 @@ class Pattern:
     zero_samples: IntArray
 
 
-def make_pattern(arm: Arm, name: str, count: int, seed: int = 0) -> Pattern:
-    """A pattern of `count` marks for `arm`, which its trajectory calls `name`. Errors: PlanError, ArmFileError."""
+def make_pattern(arm: Arm, name: str, count: int, seed: int = 0, *, on_sheet: bool = False) -> Pattern:
+    """A pattern of `count` marks for `arm`, which its trajectory calls `name`. on_sheet: it has to fit a printed sheet.
+    Errors: PlanError, ArmFileError."""
     random = np.random.default_rng(seed)
     model = ArmModel(arm)
-    pool = candidates(model, _MARGIN_MM, _POOL, random)
-    drawing = _Drawing(model.kinematics, model.limits, pool)
+    heights = Heights.for_arm(arm)
+    pool = candidates(model, heights, _MARGIN_MM, _POOL, random, on_sheet=on_sheet)
+    drawing = _Drawing(model.kinematics, model.limits, heights, pool)
     parameters = Parameters.of(believed(arm), arm)
     chosen = chosen_marks(arm, parameters, pool, count, random, drawing.accepts)
     if len(chosen) < count:
@@ -56,20 +57,19 @@ def make_pattern(arm: Arm, name: str, count: int, seed: int = 0) -> Pattern:
     strokes = [np.full(len(legs[0]), TRAVELLING)]
     touches, middles, zeros = [], [], []
     for k, index in enumerate(chosen):
-        before = chosen[k - 1] if k else None
-        way, rest = np.split(drawing.way_to(before, index), [-RESTING])
+        way, (touch, back) = drawing.way_to(chosen[k - 1] if k else None, index), drawing.touch_of(index)
+        down, rest = np.split(touch.joints[1:], [-RESTING])
         dwell = np.concatenate((rest, np.repeat(rest[-1:], round(_DWELL_S * RATE_HZ), axis=0)))
-        touch, there, back = drawing.touch_of(index)
-        begins = sum(map(len, legs)) + len(way) + len(dwell) + len(there)
-        middles.append(sum(map(len, legs)) + len(way) + len(dwell) // 2)
-        legs += [way, dwell, there, touch.joints, back]
+        begins = sum(map(len, legs)) + len(way)
+        middles.append(begins + len(down) + len(dwell) // 2)
+        zeros.append(begins + touch.zero - 1)
+        legs += [way, down, dwell, back]
         strokes += [
-            np.full(len(way), TRAVELLING),
+            np.full(len(way) + len(down), TRAVELLING),
             np.full(len(dwell), k),
-            np.full(len(there) + len(touch.joints) + len(back), TRAVELLING),
+            np.full(len(back), TRAVELLING),
         ]
         touches.append(touch)
-        zeros.append(begins + touch.zero)
     positions, stroke = np.concatenate(legs), np.concatenate(strokes)
     trajectory = Trajectory(
         arm=name,
@@ -89,10 +89,9 @@ def make_pattern(arm: Arm, name: str, count: int, seed: int = 0) -> Pattern:
 class _Drawing:
     """How marks of a pool are drawn one after the other; moves are made once and kept."""
 
-    def __init__(self, kinematics: Kinematics, limits: Limits, pool: Candidates) -> None:
-        self._kinematics, self._limits, self._pool = kinematics, limits, pool
-        self._lift_mm = kinematics.arm.pen.lift_mm
-        self._touches: dict[int, tuple[Touch, FloatArray, FloatArray] | None] = {}
+    def __init__(self, kinematics: Kinematics, limits: Limits, heights: Heights, pool: Candidates) -> None:
+        self._kinematics, self._limits, self._heights, self._pool = kinematics, limits, heights, pool
+        self._touches: dict[int, tuple[Touch, FloatArray] | None] = {}
         self._ways: dict[tuple[int | None, int], FloatArray | None] = {}
 
     def accepts(self, chosen: list[int], index: int) -> bool:
@@ -100,7 +99,7 @@ class _Drawing:
         if chosen and not self._is_clear(chosen, index):
             return False
         if index not in self._touches:
-            self._touches[index] = self._touch(chosen, index)
+            self._touches[index] = self._touch(index)
         before = chosen[-1] if chosen else None
         if self._touches[index] is None:
             return False
@@ -109,70 +108,47 @@ class _Drawing:
         return self._ways[before, index] is not None
 
     def begin(self, index: int) -> FloatArray:
-        """(1, n_joints) where the pattern begins: above its first mark."""
+        """(1, n_joints) where the pattern begins: above the beginning of its first stroke."""
         return self._kinematics.arm.complete(self._pool.raised[index])[None]
 
     def way_to(self, before: int | None, index: int) -> FloatArray:
+        """From the end of the mark before, or from above, to the beginning of a mark's stroke."""
         way = self._ways[before, index]
         assert way is not None
         return way
 
-    def touch_of(self, index: int) -> tuple[Touch, FloatArray, FloatArray]:
-        """The line of a mark, the way there from the mark, and the way up from its end; their first samples left out
-        where they repeat the last one before."""
+    def touch_of(self, index: int) -> tuple[Touch, FloatArray]:
+        """The stroke of a mark, and the way up from its end without its first sample, which repeats the last before."""
         touch = self._touches[index]
         assert touch is not None
         return touch
 
     def _is_clear(self, chosen: list[int], index: int) -> bool:
-        here = self._pool.tips_mm[index]
-        dots = self._pool.tips_mm[chosen]
-        lines = np.array([(touch.begin_mm, touch.end_mm) for touch in (self.touch_of(k)[0] for k in chosen)])
-        return bool(min(np.hypot(*(dots - here).T).min(), _to_segments(here, lines).min()) >= _APART_MM)
+        pool = self._pool
+        strokes = np.stack((pool.begins_mm[chosen], pool.tips_mm[chosen]), axis=1)
+        return bool(_apart(np.stack((pool.begins_mm[index], pool.tips_mm[index])), strokes).min() >= _APART_MM)
 
-    def _touch(self, chosen: list[int], index: int) -> tuple[Touch, FloatArray, FloatArray] | None:
-        kinematics, mark, free = self._kinematics, self._pool.tips_mm[index], self._pool.free[index]
-        dots = self._pool.tips_mm[chosen]
-        for way in _WAYS:
-            ends = np.array(ends_of(mark, way))
-            if len(dots) and min(_to_segments(dot, ends[None])[0] for dot in dots) < _APART_MM:
-                continue
-            touch = touch_line(kinematics, mark, free, way, RATE_HZ)
-            if touch is None or slowing_from_rest(self._limits, touch.joints, RATE_HZ) > 1.0:
-                continue
-            there = self._there(index, touch)
-            back = self._leg(
-                (*touch.end_mm, -REACH_MM), (*touch.end_mm, self._lift_mm), touch.joints[-1], touch.joints[-1]
-            )
-            if there is not None and back is not None:
-                return touch, there, back
-        return None
-
-    def _there(self, index: int, touch: Touch) -> FloatArray | None:
-        mark = self._pool.tips_mm[index]
-        complete = self._kinematics.arm.complete
-        up = self._leg(
-            (*mark, 0.0), (*mark, self._lift_mm), complete(self._pool.free[index]), complete(self._pool.raised[index])
-        )
-        if up is None:
+    def _touch(self, index: int) -> tuple[Touch, FloatArray] | None:
+        pool, heights = self._pool, self._heights
+        begin, mark = pool.begins_mm[index], pool.tips_mm[index]
+        free = np.stack((pool.begun[index], pool.free[index]))
+        touch = touch_line(self._kinematics, np.stack((begin, mark)), free, heights.reach_mm, RATE_HZ)
+        if touch is None or slowing_from_rest(self._limits, touch.joints, RATE_HZ) > 1.0:
             return None
-        over = self._leg((*mark, self._lift_mm), (*touch.begin_mm, self._lift_mm), up[-1], up[-1])
-        if over is None:
-            return None
-        down = self._leg((*touch.begin_mm, self._lift_mm), (*touch.begin_mm, REACH_MM), over[-1], touch.joints[0])
-        return None if down is None else np.concatenate((up, over, down[:-1]))
+        last = touch.joints[-1]
+        back = self._leg((*mark, -heights.reach_mm), (*_lifted_from(touch, heights), heights.lift_mm), last, last)
+        return None if back is None else (touch, back)
 
     def _way(self, before: int | None, index: int) -> FloatArray | None:
-        """From the end of the line of the mark before, or from above the mark, down onto the mark."""
-        complete = self._kinematics.arm.complete
-        mark, raised = self._pool.tips_mm[index], complete(self._pool.raised[index])
-        down = self._leg((*mark, self._lift_mm), (*mark, 0.0), raised, complete(self._pool.free[index]))
-        if down is None:
-            return None
-        if before is None:
+        pool, heights, complete = self._pool, self._heights, self._kinematics.arm.complete
+        begin, raised = pool.begins_mm[index], complete(pool.raised[index])
+        down = self._leg(
+            (*begin, heights.lift_mm), (*begin, heights.reach_mm), raised, self.touch_of(index)[0].joints[0]
+        )
+        if down is None or before is None:
             return down
-        touch, _, back = self.touch_of(before)
-        over = self._leg((*touch.end_mm, self._lift_mm), (*mark, self._lift_mm), back[-1], raised)
+        touch, back = self.touch_of(before)
+        over = self._leg((*_lifted_from(touch, heights), heights.lift_mm), (*begin, heights.lift_mm), back[-1], raised)
         return None if over is None else np.concatenate((over, down))
 
     def _leg(
@@ -184,9 +160,37 @@ class _Drawing:
         return None if leg is None else leg[1:]
 
 
-def _to_segments(point: FloatArray, segments: FloatArray) -> FloatArray:
-    """(n,) distances of a point (2,) to segments (n, 2, 2)."""
+def _lifted_from(touch: Touch, heights: Heights) -> FloatArray:
+    """(2,) over which place the pen is lifted from a mark."""
+    along = (touch.end_mm - touch.begin_mm) / np.linalg.norm(touch.end_mm - touch.begin_mm)
+    place: FloatArray = touch.end_mm + (heights.lift_mm + heights.reach_mm) / LIFT_SLOPE * along
+    return place
+
+
+def _apart(segment: FloatArray, others: FloatArray) -> FloatArray:
+    """(n,) distances of a segment (2, 2) to others (n, 2, 2), 0 where they cross."""
+    away = np.minimum.reduce(
+        [_to_segments(end, others) for end in segment]
+        + [_to_segments(others[:, k], np.broadcast_to(segment, others.shape)) for k in range(2)]
+    )
+    sides = [
+        _side(segment[0], segment[1], others[:, 0]) * _side(segment[0], segment[1], others[:, 1]),
+        _side(others[:, 0], others[:, 1], segment[0]) * _side(others[:, 0], others[:, 1], segment[1]),
+    ]
+    crossed: FloatArray = np.where((sides[0] < 0) & (sides[1] < 0), 0.0, away)
+    return crossed
+
+
+def _side(start: FloatArray, end: FloatArray, point: FloatArray) -> FloatArray:
+    """On which side of a line, by its sign."""
+    along, off = end - start, point - start
+    side: FloatArray = along[..., 0] * off[..., 1] - along[..., 1] * off[..., 0]
+    return side
+
+
+def _to_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
+    """(n,) distances of a point (2,), or of points (n, 2), to segments (n, 2, 2)."""
     along = segments[:, 1] - segments[:, 0]
-    share = np.clip(((point - segments[:, 0]) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    away: FloatArray = np.hypot(*(segments[:, 0] + share[:, None] * along - point).T)
+    share = np.clip(((points - segments[:, 0]) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    away: FloatArray = np.hypot(*(segments[:, 0] + share[:, None] * along - points).T)
     return away

@@ -1,4 +1,4 @@
-"""Which dot is which mark.
+"""Which spot of ink is which mark.
 
 An arm that was never calibrated draws its marks several millimetres off, but not at random: by the sum of a few modes,
 ways in which all marks move together. Their amounts are found together with the assignment: expectation maximisation
@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial.distance import cdist
 
-from planner.arrays import FloatArray, IntArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 
 _SCATTERS_MM = (6.0, 5.0, 4.0, 3.2, 2.6, 2.1, 1.8, 1.5, 1.2, 1.2)
 _SCATTER_MM = 1.2  # beside the modes: slack, and configurations that differ
@@ -20,7 +20,6 @@ _GATE_MM = 4.0
 _MISS = _GATE_MM**2 / (2 * _SCATTER_MM**2)
 _NO_DOT = np.exp(-_MISS)
 _WARP_SD_MM = np.array([4.0, 2.0, 2.0, 1.0, 1.0, 1.0])  # shift, linear and quadratic, over half the extent
-_UNLIKE = 5.0
 _SHIFTS_MM = np.array([(x, y) for x in range(-9, 10, 3) for y in range(-9, 10, 3) if np.hypot(x, y) < 9.5])
 
 
@@ -35,42 +34,33 @@ def smooth_modes(meant_mm: FloatArray) -> FloatArray:
     return modes
 
 
-def assign(meant_mm: FloatArray, dots_mm: FloatArray, ink_mm2: FloatArray, modes_mm: FloatArray) -> IntArray:
-    """(n,): index of the dot that each of n marks is, -1 where there is none.
+def assign(meant_mm: FloatArray, places_mm: FloatArray, may_be: BoolArray, modes_mm: FloatArray) -> IntArray:
+    """(n,): index of the spot that each of n marks is, -1 where there is none.
 
-    meant (n, 2), dots (m, 2): places. ink (m,): how much each dot has; a pen's marks have much the same. modes
-    (k, n, 2): how far marks are moved by one standard deviation of each.
+    meant (n, 2), places (m, 2): of marks and of spots. may_be (n, m): whether a mark can be a spot.
+    modes (k, n, 2): how far marks are moved by one standard deviation of each.
     """
-    every = _likeliest(meant_mm, dots_mm, modes_mm)
-    if np.all(every < 0):
-        return every
-    usual = float(np.median(ink_mm2[every[every >= 0]]))
-    alike = np.flatnonzero((ink_mm2 > usual / _UNLIKE) & (ink_mm2 < usual * _UNLIKE))
-    likeliest = _likeliest(meant_mm, dots_mm[alike], modes_mm)
-    found: IntArray = np.where(likeliest < 0, -1, np.append(alike, -1)[likeliest])
-    return found
+    if not may_be.any():
+        return np.full(len(meant_mm), -1)
+    by_amount = modes_mm.reshape(len(modes_mm), -1).T
+    found = [_assigned(meant_mm, places_mm, may_be, by_amount, shift) for shift in _SHIFTS_MM]
+    return min(found, key=lambda each: each[1])[0]
 
 
-def _likeliest(meant: FloatArray, dots: FloatArray, modes: FloatArray) -> IntArray:
-    if not len(dots) or not len(meant):
-        return np.full(len(meant), -1)
-    by_amount = modes.reshape(len(modes), -1).T
-    candidates = [_assigned(meant, dots, by_amount, shift) for shift in _SHIFTS_MM]
-    return min(candidates, key=lambda candidate: candidate[1])[0]
-
-
-def _assigned(meant: FloatArray, dots: FloatArray, by_amount: FloatArray, shift: FloatArray) -> tuple[IntArray, float]:
+def _assigned(
+    meant: FloatArray, places: FloatArray, may_be: BoolArray, by_amount: FloatArray, shift: FloatArray
+) -> tuple[IntArray, float]:
     """The assignment that is found from a shift to begin with, and its negative log likelihood. by_amount: (2 n, k)."""
     moved, amounts = meant + shift, np.zeros(by_amount.shape[1])
     for scatter in _SCATTERS_MM:
-        likely = np.exp(-cdist(moved, dots, "sqeuclidean") / (2 * scatter**2))
+        likely = np.where(may_be, np.exp(-cdist(moved, places, "sqeuclidean") / (2 * scatter**2)), 0.0)
         share = likely / (_NO_DOT + np.maximum(likely.sum(axis=0), likely.sum(axis=1)[:, None]))
         weight = share.sum(axis=1)
-        pull = (share @ dots - weight[:, None] * meant).ravel()
+        pull = (share @ places - weight[:, None] * meant).ravel()
         normal = by_amount.T @ (np.repeat(weight, 2)[:, None] * by_amount) + scatter**2 * np.eye(len(amounts))
         amounts = np.linalg.solve(normal, by_amount.T @ pull)
         moved = meant + (by_amount @ amounts).reshape(-1, 2)
-    cost = np.minimum(cdist(moved, dots, "sqeuclidean") / (2 * _SCATTER_MM**2), _MISS)
+    cost = np.where(may_be, np.minimum(cdist(moved, places, "sqeuclidean") / (2 * _SCATTER_MM**2), _MISS), _MISS)
     marks, chosen = linear_sum_assignment(cost)
     told = cost[marks, chosen] < _MISS
     assignment = np.full(len(meant), -1)

@@ -13,11 +13,13 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from planner.arrays import FloatArray
+from planner.error_model.photo.errors import PhotoError
 from planner.error_model.photo.tags import SeenTags
 
 _CORNER_PX = 0.1  # sd of a corner's place, at best
 _PRIOR_SD = np.array([0.1, 0.05, 0.005, 0.005])  # of the lens; those of phones are well within
 _SPREAD_SD = 0.2  # mm, how far black looks to reach into white, by ink or by light
+_ASTRAY = 0.03  # of half a picture's diagonal: corners that are usually farther off belong to no page
 _N_SHAPE = 12
 
 
@@ -75,8 +77,9 @@ class Camera:
         )
 
 
-def fit_camera(tags: SeenTags, picture_shape: tuple[int, ...]) -> Camera:
-    """Least squares over the corners of all tags, robust against a few that are wrong."""
+def fit_camera(source: str, tags: SeenTags, picture_shape: tuple[int, ...]) -> Camera:
+    """Least squares over the corners of all tags, robust against a few that are wrong. Errors: PhotoError where they
+    cannot be those of a flat page."""
     rows, columns = picture_shape[:2]
     centre, half = np.array([columns - 1, rows - 1]) / 2, float(np.hypot(columns, rows)) / 2
     extent = np.array(tags.layout.page.extent_mm)
@@ -92,10 +95,21 @@ def fit_camera(tags: SeenTags, picture_shape: tuple[int, ...]) -> Camera:
             (off.ravel() * half / _CORNER_PX, parameters[8:_N_SHAPE] / _PRIOR_SD, parameters[-1:] / _SPREAD_SD)
         )
 
+    start = _homography(page, seen)
     found = least_squares(
-        residuals, np.concatenate((_homography(page, seen), np.zeros(5))), loss="soft_l1", f_scale=2.0, x_scale="jac"
+        residuals,
+        np.concatenate((np.where(np.isfinite(start), start, 0.0), np.zeros(5))),
+        loss="soft_l1",
+        f_scale=2.0,
+        x_scale="jac",
     )
     off = residuals(found.x)[: seen.size].reshape(-1, 2)
+    if not found.success or float(np.median(np.abs(off))) * _CORNER_PX > _ASTRAY * half:
+        raise PhotoError(
+            source,
+            "its tags are not where those of a flat sheet would be seen; lay the sheet flat, and photograph all of it, "
+            "sharp and in even light",
+        )
     excess = max(1.0, float(np.square(off).mean()))
     jacobian: FloatArray = np.asarray(found.jac)
     covariance = np.asarray(excess * np.linalg.inv(jacobian.T @ jacobian), dtype=np.float64)[:_N_SHAPE, :_N_SHAPE]

@@ -7,29 +7,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arrays import FloatArray
+from planner.arrays import BoolArray, FloatArray
 from planner.error_model.photo.assignment import assign, smooth_modes
 from planner.error_model.photo.camera import Camera, fit_camera
-from planner.error_model.photo.dots import find_dots
 from planner.error_model.photo.errors import PhotoError
 from planner.error_model.photo.ink import InkMap, ink_map
 from planner.error_model.photo.picture import Picture
+from planner.error_model.photo.strokes import Spots, find_spots
 from planner.error_model.photo.tags import SeenTags, find_tags
-from planner.error_model.photo.touch_downs import height_mm, touch_down_span
+from planner.error_model.photo.touch_downs import ink_begins
 from planner.error_model.sheet.layout import BAR_MM, SheetLayout
-from planner.error_model.sheet.marks import Mark, extent_mm, places_mm
+from planner.error_model.sheet.marks import Mark, TouchDown, extent_mm, places_mm
 from planner.error_model.sheet.modes import modes_mm
 
 _STRAY_MM = 12.0
 _LEAST_PX_PER_MM = 1.5
-_DOT_PX, _DOT_MM = 0.1, 0.02  # sd of a dot's middle: of the picture, and of ink that is no perfect dot
-_SMEAR = 0.25  # of what a dot is longer than wide, as the sd of its middle
+_FEWEST = 4
+_TANGLED_MM = 0.4  # sd of a mark whose stroke has run into others
+_MOST = 0.8  # of all marks: with fewer a sheet does not tell enough by itself
+_BLOT_PX, _BLOT_MM = 0.1, 0.08  # sd of a blot's middle: of the picture, and of ink that is no perfect one
 _WAVY_MM = 0.15
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Contact:
-    """How high the tip was over the paper, and where the touch-down line that tells it begins and ends (2, 2), mm."""
+    """How high the tip was over the paper, and where ink of its stroke begins, and its mark is (2, 2), mm."""
 
     height_mm: float
     ends_mm: FloatArray
@@ -69,7 +71,7 @@ def read_sheet(
     Errors: PhotoError where the picture does not show the sheet, or shows it too small, or without ink.
     """
     tags = find_tags(source, picture, marks)
-    camera = fit_camera(tags, picture.shape)
+    camera = fit_camera(source, tags, picture.shape)
     layout = tags.layout
     meant = layout.to_page_mm(places_mm(marks))
     finest = float(camera.px_per_mm(meant)[..., 0].min())
@@ -80,34 +82,38 @@ def read_sheet(
             f"least; it takes {_LEAST_PX_PER_MM:g}: go nearer, or hold the camera more from above",
         )
     ink = _ink_of(picture, camera, layout, marks)
-    dots = find_dots(ink)
+    spots = find_spots(ink)
     modes = modes_mm(marks)
     assignment = assign(
         places_mm(marks),
-        layout.to_sheet_mm(dots.places_mm),
-        dots.ink_mm2,
+        layout.to_sheet_mm(spots.blots_mm),
+        np.array([_may_be(spots, layout, mark) for mark in marks]),
         smooth_modes(places_mm(marks)) if modes is None else modes,
     )
-    if np.all(assignment < 0):
-        raise PhotoError(source, "no marks are on the sheet; photograph it once the pattern is drawn")
+    if np.sum(assignment >= 0) < min(_FEWEST, len(marks)):  # so few may be specks
+        raise PhotoError(
+            source,
+            "no marks are on the sheet; photograph it once the pattern is drawn, and if the pen never came to the "
+            "paper, set its height first (plan jog)",
+        )
     scale = np.array([bars_mm[1], bars_mm[0]]) / BAR_MM
-    found = [index for index, dot in enumerate(assignment) if dot >= 0]
-    chosen = dots.only(assignment[found])
-    contacts = _touch_downs(ink, layout, [marks[index] for index in found], chosen.places_mm)
+    found = np.flatnonzero(assignment >= 0).tolist()
+    rests = [_rest_of(spots, assignment[index], layout, marks[index]) for index in found]
+    blots, smeared = (np.array(each) for each in zip(*rests, strict=True))
     sd = np.sqrt(
-        camera.sd_mm(chosen.places_mm) ** 2
-        + (_DOT_PX / camera.px_per_mm(chosen.places_mm)[..., 0]) ** 2
-        + _DOT_MM**2
-        + (_SMEAR * chosen.smear_mm) ** 2
+        camera.sd_mm(blots) ** 2 + (_BLOT_PX / camera.px_per_mm(blots)[..., 0]) ** 2 + _BLOT_MM**2 + smeared**2
     )
     measured = [
-        MeasuredMark(marks[index], place, float(spread), contact)
-        for index, place, spread, contact in zip(
-            found, scale * layout.to_sheet_mm(chosen.places_mm), sd, contacts, strict=True
+        MeasuredMark(
+            marks[index],
+            scale * layout.to_sheet_mm(blot),
+            float(spread),
+            _contact(ink, blot, spots, assignment[index], layout, marks[index], np.delete(blots, k, axis=0), scale),
         )
+        for k, (index, blot, spread) in enumerate(zip(found, blots, sd, strict=True))
     ]
     missing = tuple(mark for index, mark in enumerate(marks) if assignment[index] < 0)
-    return Reading(layout, camera, tags, tuple(measured), missing, scale, _warnings(camera, tags, measured))
+    return Reading(layout, camera, tags, tuple(measured), missing, scale, _warnings(camera, tags, measured, len(marks)))
 
 
 def _ink_of(picture: Picture, camera: Camera, layout: SheetLayout, marks: Sequence[Mark]) -> InkMap:
@@ -123,34 +129,52 @@ def _ink_of(picture: Picture, camera: Camera, layout: SheetLayout, marks: Sequen
     )
 
 
-def _touch_downs(
-    ink: InkMap, layout: SheetLayout, marks: Sequence[Mark], places_mm: FloatArray
-) -> list[Contact | None]:
-    """The touch-down of each mark, found at a place (n, 2) on the page; None where it has none, or none is seen."""
-    moved = {}
-    for index, (mark, place) in enumerate(zip(marks, places_mm, strict=True)):
-        if mark.touch_down:
-            meant = layout.to_page_mm(np.array([mark.place_mm, mark.touch_down.start_mm, mark.touch_down.end_mm]))
-            moved[index] = meant[1:] + place - meant[0]
-    found: list[Contact | None] = []
-    for index, mark in enumerate(marks):
-        contact = mark.touch_down
-        if contact is None:
-            found.append(None)
-            continue
-        start, end = moved[index]
-        others = np.array([*places_mm, *(line[1] for number, line in moved.items() if number != index)])
-        span = touch_down_span(ink, start, end, others)
-        along = (end - start) / np.linalg.norm(end - start)
-        found.append(
-            None
-            if span is None
-            else Contact(height_mm(contact, span), layout.to_sheet_mm(start + np.outer(span, along)))
-        )
-    return found
+def _may_be(spots: Spots, layout: SheetLayout, mark: Mark) -> BoolArray:
+    """(m,) which spots a mark can be."""
+    return spots.could_be_strokes(*_way_of(layout, mark.touch_down)) if mark.touch_down else spots.could_be_dots()
 
 
-def _warnings(camera: Camera, tags: SeenTags, measured: Sequence[MeasuredMark]) -> tuple[str, ...]:
+def _rest_of(spots: Spots, spot: int, layout: SheetLayout, mark: Mark) -> tuple[FloatArray, float]:
+    """(2,) on the page: the mark, which is one of the spots; and the sd that its ink leaves."""
+    if mark.touch_down is None:
+        return spots.blots_mm[spot], 0.0
+    if not spots.is_whole[spot]:
+        return spots.blots_mm[spot], _TANGLED_MM
+    return spots.rest_mm(spot, _way_of(layout, mark.touch_down)[0])
+
+
+def _way_of(layout: SheetLayout, touch: TouchDown) -> tuple[FloatArray, float]:
+    """The direction (2,) of a stroke on the page, and how long it is from where a tip without error begins it."""
+    start, end = layout.to_page_mm(np.array([touch.start_mm, touch.end_mm]))
+    length = float(np.linalg.norm(end - start))
+    return (end - start) / length, length
+
+
+def _contact(
+    ink: InkMap,
+    rest_mm: FloatArray,
+    spots: Spots,
+    spot: int,
+    layout: SheetLayout,
+    mark: Mark,
+    others_mm: FloatArray,
+    scale: FloatArray,
+) -> Contact | None:
+    """What the stroke of a mark tells, that is one of the spots.
+
+    rest (2,), others (n, 2): where its pen rested, and those of other marks, on the page. None where it has none, or
+    none is seen."""
+    if mark.touch_down is None or not spots.is_whole[spot]:
+        return None
+    way, length = _way_of(layout, mark.touch_down)
+    begin = ink_begins(ink, rest_mm, spots.axis(spot, way), length, others_mm)
+    if begin is None:
+        return None
+    pressed = mark.touch_down.slope * float((scale[::-1] * (rest_mm - begin)) @ way)
+    return Contact(-pressed, scale * layout.to_sheet_mm(np.array([begin, rest_mm])))
+
+
+def _warnings(camera: Camera, tags: SeenTags, measured: Sequence[MeasuredMark], n_marks: int) -> tuple[str, ...]:
     found = []
     per_mm = float(camera.px_per_mm(tags.page_mm.mean(axis=1)).mean())
     off = camera.residual_px / per_mm
@@ -158,5 +182,10 @@ def _warnings(camera: Camera, tags: SeenTags, measured: Sequence[MeasuredMark]) 
         found.append(
             f"the tags are {off:.2f} mm from where they should be: the paper is not flat, or the picture is "
             "blurred; the marks are as uncertain"
+        )
+    if len(measured) < _MOST * n_marks:
+        found.append(
+            f"only {len(measured)} of {n_marks} marks were read: the pen was too high or too low for many; "
+            "calibrate with these, and draw and photograph another sheet with the calibrated arm"
         )
     return tuple(found)

@@ -11,7 +11,7 @@ import numpy as np
 from planner.arrays import FloatArray
 from planner.error_model.sheet.marks import Mark
 
-_N_MODES = 16
+_N_MODES = 24
 
 
 def with_modes(marks: Sequence[Mark], draws_mm: FloatArray) -> list[Mark]:

@@ -14,22 +14,24 @@ from planner.error_model.sheet.pdf import write_sheet
 from tests.error_model.photo.rendering import BLACK_INK, Floats, Ink, Sheet, drawn_sheet
 
 SLOPE = 0.7
-_LINE_MM = np.array([[-3.0, -6.0], [7.0, -6.0]])
+_LENGTH_MM = 5.0
+_WAYS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
 def pattern(columns: int = 10, rows: int = 5, spacing_mm: float = 20.0, x_mm: float = 60.0) -> list[Mark]:
-    """Marks in rows across, each with a touch-down line to its right."""
+    """Marks in rows across, each the end of a stroke, which come from all sides."""
     marks: list[Mark] = []
     for x in x_mm + spacing_mm * np.arange(rows):
         for y in spacing_mm * (np.arange(columns) - (columns - 1) / 2):
-            (x0, y0), (x1, y1) = _LINE_MM + np.array([x, y])
-            marks.append(Mark(len(marks), float(len(marks)), (x, y), TouchDown((x0, y0), (x1, y1), SLOPE)))
+            place = np.array([x, y])
+            x0, y0 = place - _LENGTH_MM * np.array(_WAYS[len(marks) % len(_WAYS)])
+            marks.append(Mark(len(marks), float(len(marks)), (x, y), TouchDown((x0, y0), (x, y), SLOPE)))
     return marks
 
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """places_mm (n, 2), heights_mm (n,): where the marks came, and how high the tip was."""
+    """places_mm (n, 2), heights_mm (n,): where the marks came, and how high the tip was at them."""
 
     marks: Sequence[Mark]
     layout: SheetLayout
@@ -54,9 +56,10 @@ def draw(
     dirt: int = 0,
     size: PaperSize = PaperSize.A4,
 ) -> Drawn:
-    """Marks 4 to 8 mm off by a smooth warp, and a scatter beside it; dots of 0.4 to 1 mm and lines of 0.4 mm.
+    """Marks 4 to 8 mm off by a smooth warp, and a scatter beside it; strokes of 0.4 mm with blots of 0.6 to 1 mm, from
+    which the lifted pen drags ink some way on.
 
-    without: marks that left no dot. dirt: specks on the paper.
+    without: marks that left no ink. dirt: specks on the paper.
     """
     rng = np.random.default_rng(seed)
     pdf = folder / f"sheet{seed}.pdf"
@@ -68,17 +71,16 @@ def draw(
     off = off + np.column_stack((x, y)) @ rng.normal(0, 1.2, (2, 2))
     off += np.column_stack((x * x, x * y, y * y)) @ rng.normal(0, 0.6, (3, 2)) + rng.normal(0, scatter_mm, meant.shape)
     off *= np.minimum(1.0, 8.0 / np.linalg.norm(off, axis=1, keepdims=True))
-    heights = rng.normal(0, height_sd_mm, len(marks))
+    late = np.minimum(rng.normal(0, height_sd_mm, len(marks)) / SLOPE, _LENGTH_MM - 1.0)
     ink = []
-    for mark, away, height in zip(marks, off, heights, strict=True):
-        if mark.number not in without:
-            ink.append(Ink(np.array([mark.place_mm]) + away, rng.uniform(0.4, 1.0), colour))
+    for mark, place, each in zip(marks, meant + off, late, strict=True):
+        if mark.number in without:
+            continue
         if mark.touch_down:
-            start, end = np.array([mark.touch_down.start_mm, mark.touch_down.end_mm]) + away
-            along = (end - start) / np.linalg.norm(end - start)
-            late = height / mark.touch_down.slope
-            if late < np.linalg.norm(end - start):
-                ink.append(Ink(np.array([start + late * along, end]), 0.4, colour))
+            along = np.subtract(mark.touch_down.end_mm, mark.touch_down.start_mm) / _LENGTH_MM
+            begin = place - (_LENGTH_MM - each) * along
+            ink.append(Ink(np.array([begin, place, place + rng.uniform(0.3, 2.0) * along]), 0.4, colour))
+        ink.append(Ink(place[None], rng.uniform(0.6, 1.0), colour))
     low, high = meant.min(axis=0) - 8, meant.max(axis=0) + 8
     ink += [Ink(rng.uniform(low, high)[None], rng.uniform(0.1, 0.3), (0.4, 0.35, 0.3)) for _ in range(dirt)]
-    return Drawn(marks, layout, meant + off, heights, ink, pdf)
+    return Drawn(marks, layout, meant + off, -SLOPE * (_LENGTH_MM - late), ink, pdf)

@@ -31,24 +31,24 @@ def test_marks_closer_than_they_are_off_are_told_apart_by_the_modes(seed: int) -
     marks = with_modes([Mark(k, float(k), tuple(place)) for k, place in enumerate(meant)], draws.reshape(90, -1, 2))
     off = ((rng.normal(size=len(sizes)) * sizes) @ axes).reshape(-1, 2) + rng.normal(0, 0.3, meant.shape)
     order = rng.permutation(len(meant))
-    dots, ink = (meant + off)[order], rng.uniform(0.15, 0.6, len(meant))
+    dots, any_may_be = (meant + off)[order], np.ones((len(meant), len(meant)), dtype=bool)
     modes = modes_mm(marks)
     assert modes is not None
-    right = assign(meant, dots, ink, modes) == np.argsort(order)
+    right = assign(meant, dots, any_may_be, modes) == np.argsort(order)
     assert right.mean() > 0.95
-    assert np.mean(assign(meant, dots, ink, smooth_modes(meant)) == np.argsort(order)) < right.mean()
+    assert np.mean(assign(meant, dots, any_may_be, smooth_modes(meant)) == np.argsort(order)) < right.mean()
 
 
 def test_no_dots_are_no_marks() -> None:
     meant = np.array([[80.0, 0.0], [90.0, 0.0]])
-    assert assign(meant, np.empty((0, 2)), np.empty(0), smooth_modes(meant)).tolist() == [-1, -1]
+    assert assign(meant, np.empty((0, 2)), np.empty((2, 0), dtype=bool), smooth_modes(meant)).tolist() == [-1, -1]
 
 
-def test_a_blot_and_a_speck_beside_marks_are_left_alone() -> None:
+def test_a_spot_that_cannot_be_a_mark_is_left_alone() -> None:
     x, y = np.meshgrid(np.arange(60.0, 121.0, 20.0), np.arange(-40.0, 41.0, 20.0))
     meant = np.column_stack((x.ravel(), y.ravel()))
-    dots = np.concatenate((meant[1:] + np.array([3.0, -2.0]), meant[:1] + np.array([3.1, -2.1])))
-    ink = np.full(len(dots), 0.3)
-    for spoiled in (0.02, 5.0):
-        ink[-1] = spoiled
-        assert assign(meant, dots, ink, smooth_modes(meant)).tolist() == [-1, *range(len(meant) - 1)]
+    spots = np.concatenate((meant[1:] + np.array([3.0, -2.0]), meant[:1] + np.array([3.1, -2.1])))
+    may_be = np.ones((len(meant), len(spots)), dtype=bool)
+    assert assign(meant, spots, may_be, smooth_modes(meant)).tolist() == [len(spots) - 1, *range(len(meant) - 1)]
+    may_be[:, -1] = False
+    assert assign(meant, spots, may_be, smooth_modes(meant)).tolist() == [-1, *range(len(meant) - 1)]

