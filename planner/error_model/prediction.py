@@ -17,7 +17,7 @@ from planner.error_model.believed import believed
 from planner.error_model.calibration.parameters import SLACK_SD, Parameters
 from planner.error_model.cause import Cause, differing_lags, left_open, slack_of, unmeasured
 from planner.error_model.chain import tips
-from planner.error_model.model import Standing
+from planner.error_model.drawn import jacobian_at
 
 INK_MM = 1.5
 """A sprung pen leaves ink up to so far above the paper."""
@@ -211,9 +211,7 @@ def _left_open(arm: Arm, played: Played, random: np.random.Generator) -> tuple[F
     model = believed(arm)
     parameters = Parameters.of(model, arm)
     joints = played.meant[random.integers(0, len(played.meant), _CHOSEN)]
-    told = np.column_stack([curve.told(joints[:, k]) for k, curve in enumerate(model.curves)])
-    jacobian = parameters.jacobian(model, tips(model.geometry, joints), Standing(joints, told, np.zeros_like(joints)))
-    variance = (jacobian**2 * parameters.sd**2).sum(axis=2).mean(axis=0)
+    variance = (jacobian_at(parameters, model, joints) ** 2 * parameters.sd**2).sum(axis=2).mean(axis=0)
     return SLACK_SD * arm.per_file_unit, np.sqrt(variance)
 
 

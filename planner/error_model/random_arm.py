@@ -7,17 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from planner.arms.arm import Arm, Joint
-from planner.arrays import FloatArray
 from planner.error_model.believed import arm_of, believed
 from planner.error_model.calibration.parameters import Parameters
-from planner.error_model.chain import tips
-from planner.error_model.model import Standing
+from planner.error_model.drawn import drawn_joints, jacobian_at
+from planner.redundancy.arm_model import ArmModel
 
 _LAG_SPREAD = 0.25
 _BUS_LAG_S = 0.02
 _LEAST_SLACK = 0.002
 """rad or mm: no joint has none."""
-_POSTURES = 200
 _TRIES = 50
 
 
@@ -27,7 +25,7 @@ def random_arm(arm: Arm, seed: int) -> Arm:
     random = np.random.default_rng(seed)
     model = believed(arm)
     parameters = Parameters.of(model, arm)
-    share = 1.0 if arm.accuracy is None else arm.accuracy.tip_mm / _tip_sd_mm(arm, parameters, random)
+    share = 1.0 if arm.accuracy is None else arm.accuracy.tip_mm / _tip_sd_mm(arm, parameters)
     for _ in range(_TRIES):
         true = parameters.model(share * parameters.sd * random.normal(size=len(parameters.sd)))
         if all(curve.is_monotone for curve in true.curves):
@@ -50,11 +48,7 @@ def _lagging(joint: Joint, share: float) -> Joint:
     return replace(joint, bus=replace(joint.bus, lag_s=share * (joint.bus.lag_s or _BUS_LAG_S)))
 
 
-def _tip_sd_mm(arm: Arm, parameters: Parameters, random: np.random.Generator) -> float:
+def _tip_sd_mm(arm: Arm, parameters: Parameters) -> float:
     """Along the paper, of an arm that nobody has calibrated."""
-    joints: FloatArray = random.uniform(arm.minimum, arm.maximum, (_POSTURES, arm.n_joints))
-    told = np.column_stack([curve.told(joints[:, k]) for k, curve in enumerate(parameters.prior.curves)])
-    jacobian = parameters.jacobian(
-        parameters.prior, tips(parameters.prior.geometry, joints), Standing(joints, told, np.zeros_like(joints))
-    )
+    jacobian = jacobian_at(parameters, parameters.prior, drawn_joints(ArmModel(arm)))
     return float(np.sqrt(((jacobian[:, :2] ** 2) @ parameters.sd**2).mean()))

@@ -15,11 +15,14 @@ from planner.error_model.calibration.calibrate import Calibrated, calibrate
 from planner.error_model.calibration.files import Touches, read_marks, read_record
 from planner.error_model.calibration.sheets import rows_of_marks
 from planner.error_model.calibration.summary import as_json, lines, warnings
+from planner.error_model.chain import tips as tips_of
+from planner.error_model.drawn import drawn_joints
 from planner.error_model.lag import lagged
 from planner.error_model.model import Told, tips_at
 from planner.error_model.pattern.touch import SLOPE, Heights
 from planner.error_model.prediction import Along, Prediction
 from planner.errors import CalibrationError
+from planner.redundancy.arm_model import ArmModel
 from tests.error_model.conftest import Drawn
 from tests.judge import playing
 from tests.judge.true_arm import TrueArm, random_arm
@@ -71,6 +74,23 @@ def test_marks_tell_where_other_marks_come_and_how_surely(
     file.write_text(arm_toml(found.arm, ["as calibrated"]))
     change, _ = tips_at(believed(read_arm_file(file)), told_for_marks(fresh))
     assert rms(fresh.tips_mm(true, sd_mm=0.0) - change.tip_mm) < sizes[-1] + 0.05
+
+
+def test_how_sure_tips_are_is_told_where_drawings_are_drawn(sheet49: Drawn, true_arms: list[TrueArm]) -> None:
+    """The canvas has edges and corners which marks hardly come to: an arm is further off there, and that is known."""
+    joints = drawn_joints(ArmModel(sheet49.arm))
+    off, sure = [], []
+    for seed, true in enumerate(true_arms):
+        found = calibrate(sheet49.arm, [sheet49.sheet(sheet49.tips_mm(true, seed))])
+        model, accuracy = found.fit.model, found.arm.accuracy
+        told = np.column_stack([curve.told(joints[:, k]) for k, curve in enumerate(model.curves)])
+        off.append(np.abs(true.tip_mm(true.angles(told)) - tips_of(model.geometry, joints).tip_mm))
+        assert accuracy is not None
+        sure.append((accuracy.tip_mm, accuracy.height_mm))
+    errors, (tip_mm, height_mm) = np.concatenate(off), np.mean(sure, axis=0)
+    assert 1 / 1.5 < tip_mm / np.sqrt((errors[:, :2] ** 2).mean()) < 1.5
+    assert 1 / 1.5 < height_mm / np.sqrt((errors[:, 2] ** 2).mean()) < 1.5
+    assert errors.max() < 1.5
 
 
 def test_gravity_that_keeps_joints_on_one_side_is_found(sheet49: Drawn) -> None:

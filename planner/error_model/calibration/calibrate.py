@@ -15,8 +15,10 @@ from planner.error_model.calibration.fit import Fit, Marks, fit
 from planner.error_model.calibration.parameters import Parameters
 from planner.error_model.calibration.plausible import refuse_another_sheet, refuse_mirrored, wrong_direction
 from planner.error_model.calibration.sheets import Sheet, marks_of
+from planner.error_model.drawn import drawn_joints, jacobian_at
 from planner.error_model.model import tips_at
 from planner.errors import CalibrationError
+from planner.redundancy.arm_model import ArmModel
 
 FEWEST_MARKS = 12
 _UNTOLD = 0.8
@@ -92,8 +94,7 @@ def calibrate(arm: Arm, sheets: Sequence[Sheet]) -> Calibrated:
                 f"the curve of joint {joint_.name} would not be monotone: its servo "
                 "cannot be so; measure again, or correct its table or its limits",
             )
-    is_dot = np.concatenate([~marks.falls.any(axis=1) for marks in sets])
-    sd = found.tip_sd_mm(found.jacobian[is_dot])
+    sd = found.tip_sd_mm(jacobian_at(parameters, model, drawn_joints(ArmModel(arm))))
     slack = parameters.slack_of(np.sqrt(np.diag(found.covariance)))
     accuracy = Accuracy(n_seen, _rms(sd[:, :2]), _rms(sd[:, 2]), tuple(slack.tolist()))
     names = [(sheet.name, int(number)) for sheet, of_sheet in zip(sheets, numbers, strict=True) for number in of_sheet]

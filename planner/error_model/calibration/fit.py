@@ -27,6 +27,7 @@ _BETTER = 0.5
 """So much less a minimum has to cost to be taken instead."""
 _BLUNDER = 0.3
 """Marks of less weight are outliers."""
+_SETTLING = 10
 _MEDIAN_OF_CHI = 0.9
 """Of the root mean square of two or three normal numbers."""
 
@@ -213,15 +214,27 @@ def _discrepancy(
     """(2,) what the errors of marks left out exceed their own expectation by.
 
     With H the share that a mark has in its own fit, the error of the prediction by the others is (I - H)^-1 r, of
-    covariance (I - H)^-1 R.
+    covariance (I - H)^-1 R. Marks that the others hardly tell of say little.
     """
-    excess: tuple[list[float], list[float]] = ([], [])
+    left_out: tuple[list[tuple[float, float]], list[tuple[float, float]]] = ([], [])
     for r, J, s, w in zip(residual, jacobian, sd.tolist(), weights.tolist(), strict=True):
         seen = np.flatnonzero(np.isfinite(r))
         if not len(seen) or w < _BLUNDER:
             continue
         keep = np.linalg.inv(np.eye(len(seen)) - w * J[seen] @ covariance @ J[seen].T / s**2)
-        left_out = keep @ r[seen]
-        for axis, error, expected in zip(seen.tolist(), left_out.tolist(), np.diag(keep).tolist(), strict=True):
-            excess[axis == 2].append(error**2 - expected * s**2)
-    return np.sqrt([max(float(np.mean(part)), 0.0) if part else 0.0 for part in excess])
+        errors = keep @ r[seen]
+        for axis, error, expected in zip(seen.tolist(), errors.tolist(), np.diag(keep).tolist(), strict=True):
+            left_out[axis == 2].append((error**2, expected * s**2))
+    return np.sqrt([_excess(np.array(part)) if part else 0.0 for part in left_out])
+
+
+def _excess(squares: FloatArray) -> float:
+    """The variance that squared errors have in common beyond what is expected of each. squares: (n, 2), both of these.
+
+    The most likely one has every square count by its own variance, what is looked for included.
+    """
+    excess = 0.0
+    for _ in range(_SETTLING):
+        weight = (squares[:, 1] + excess) ** -2.0
+        excess = max(float((weight * (squares[:, 0] - squares[:, 1])).sum() / weight.sum()), 0.0)
+    return excess

@@ -13,7 +13,7 @@ from planner.error_model.chain import TipChange
 from planner.error_model.model import ErrorModel, Standing
 
 _DEGREE_RAD = float(np.radians(1.0))
-CURVE_SD = (4.0, 4.0, 1.3, 0.9, 0.6, 0.4, 0.3, 0.2, 0.15, 0.1)
+CURVE_SD = (3.0, 3.0, 1.8, 1.4, 1.1, 0.9, 0.7, 0.5, 0.35, 0.25)
 """Of the correction of a curve's coefficients, degrees (or mm for a slide)."""
 SLACK_SD = 0.8
 """Degrees or mm."""

@@ -34,14 +34,13 @@ choice."""
 class Candidates:
     """Strokes that end in a mark. tips_mm, begins_mm: (n, 2) the marks, and where their strokes begin. free, begun,
     raised: (n, n_independent) configurations at the mark, at the beginning and at the lift height above that, from
-    which the arm comes down; drawn: (n, n_independent) what drawings are drawn in at the marks."""
+    which the arm comes down."""
 
     tips_mm: FloatArray
     begins_mm: FloatArray
     free: FloatArray
     begun: FloatArray
     raised: FloatArray
-    drawn: FloatArray
 
     def __len__(self) -> int:
         return len(self.tips_mm)
@@ -66,7 +65,7 @@ def candidates(
     large."""
     arm, kinematics = model.arm, model.kinematics
     configuration_map = model.configuration_map()
-    canvas = canvas_of(model, CanvasKind.USABLE, heights.lift_mm)
+    canvas = canvas_of(model, CanvasKind.USABLE, arm.pen.lift_mm)
     low = np.array([canvas.near_mm, canvas.right_mm]) + margin_mm
     high = np.array([canvas.far_mm, canvas.left_mm]) - margin_mm
     if on_sheet:
@@ -93,10 +92,8 @@ def candidates(
         usable &= begins_well & _kept(kinematics, begun)
         raised, risen = project(kinematics, np.where(usable[:, None], begun, reference), _at(begins, heights.lift_mm))
         usable &= risen & _kept(kinematics, raised)
-        drawn, exact = project(kinematics, configuration_map.reference(tips), tips)
-        usable &= exact
         usable &= ((begins >= low) & (begins <= high)).all(axis=1)
-        found.append(Candidates(tips[:, :2], begins, free, begun, raised, drawn).of(usable))
+        found.append(Candidates(tips[:, :2], begins, free, begun, raised).of(usable))
         if sum(map(len, found)) >= count:
             break
     whole = Candidates(*(np.concatenate([getattr(each, field.name) for each in found]) for field in fields(Candidates)))

@@ -18,34 +18,31 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.error_model.calibration.parameters import Parameters
 from planner.error_model.chain import tips
-from planner.error_model.model import Standing
+from planner.error_model.drawn import jacobian_at
 from planner.error_model.pattern.candidates import Candidates
 
 MARK_SD_MM = 0.15
-_PROBES = 120
 
 
 def chosen_marks(
     arm: Arm,
     parameters: Parameters,
     pool: Candidates,
+    drawn: FloatArray,
     count: int,
     random: np.random.Generator,
     accepts: Callable[[list[int], int], bool],
 ) -> list[int]:
     """Indices of `count` marks of the pool in the order that they are drawn in; fewer where no more are accepted.
 
-    accepts(chosen, next) says whether a mark can follow those that are chosen.
+    drawn: (n, n_joints) configurations of drawings, whose tips are to be told. accepts(chosen, next) says whether a
+    mark can follow those that are chosen.
     """
     model = parameters.prior
     joints, begun = arm.complete(pool.free), arm.complete(pool.begun)
     jacobians, by_joint = _jacobians(parameters, joints)
-    probes = random.choice(len(pool), min(_PROBES, len(pool)), replace=False)
-    goals = _on_sides(
-        parameters,
-        *_jacobians(parameters, arm.complete(pool.drawn[probes])),
-        random.choice((-1.0, 1.0), joints[probes].shape),
-    ).reshape(-1, jacobians.shape[2])
+    sides = random.choice((-1.0, 1.0), drawn.shape)
+    goals = _on_sides(parameters, *_jacobians(parameters, drawn), sides).reshape(-1, jacobians.shape[2])
     covariance = np.diag(parameters.sd**2)
     standing = joints.mean(axis=0)
     chosen: list[int] = []
@@ -80,9 +77,7 @@ def _jacobians(parameters: Parameters, joints: FloatArray) -> tuple[FloatArray, 
     """Of tips with joints (n, n_joints): by the parameters, slack apart, (n, 3, n_parameters) and by joints (n, 3,
     n_joints)."""
     model = parameters.prior
-    told = np.column_stack([curve.told(joints[:, k]) for k, curve in enumerate(model.curves)])
-    change = tips(model.geometry, joints)
-    return parameters.jacobian(model, change, Standing(joints, told, np.zeros_like(joints))), change.by_joint
+    return jacobian_at(parameters, model, joints), tips(model.geometry, joints).by_joint
 
 
 def _on_sides(parameters: Parameters, jacobians: FloatArray, by_joint: FloatArray, side: FloatArray) -> FloatArray:

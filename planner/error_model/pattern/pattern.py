@@ -10,6 +10,7 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray, IntArray
 from planner.error_model.believed import believed
 from planner.error_model.calibration.parameters import Parameters
+from planner.error_model.drawn import drawn_joints
 from planner.error_model.pattern.candidates import Candidates, candidates
 from planner.error_model.pattern.choice import chosen_marks
 from planner.error_model.pattern.legs import RESTING, slowing_from_rest, straight_leg
@@ -50,7 +51,8 @@ def make_pattern(arm: Arm, name: str, count: int, seed: int = 0, *, on_sheet: bo
     pool = candidates(model, heights, _MARGIN_MM, _POOL, random, on_sheet=on_sheet)
     drawing = _Drawing(model.kinematics, model.limits, heights, pool)
     parameters = Parameters.of(believed(arm), arm)
-    chosen = chosen_marks(arm, parameters, pool, count, random, drawing.accepts)
+    drawn = drawn_joints(model)
+    chosen = chosen_marks(arm, parameters, pool, drawn, count, random, drawing.accepts)
     if len(chosen) < count:
         raise PlanError(f"arm {arm.name}: its canvas has room for {len(chosen)} marks, not for {count}")
     legs = [drawing.begin(chosen[0])]
