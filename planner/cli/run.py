@@ -37,7 +37,7 @@ def run(arguments: list[str]) -> int:
         refuse_unkept(options.trajectory)
     with waiting("examining", quiet=options.quiet or options.events):
         job = examine(options)
-    true_arm = true_arm_of(options, job.arm)
+    true_arm = true_arm_of(options, job)
     rig = set_up(options, job.arm, true_arm)
     if options.frame:
         from planner.cli.run_frame import go_round

@@ -24,6 +24,7 @@ from planner.arms.arm_file import load_arm
 from planner.arms.usual_servos import describes_servos, with_usual_servos
 from planner.cli.controls import KEYS, Controls, controls
 from planner.cli.run_events import ToldRun
+from planner.cli.run_job import Job
 from planner.cli.run_journal import RunJournal
 from planner.cli.run_pens import PenChanges
 from planner.cli.terminal import print_note, print_warnings, progress
@@ -50,12 +51,13 @@ class Rig:
     insert: Callable[[float], None] = lambda height_mm: None
 
 
-def true_arm_of(options: argparse.Namespace, arm: Arm) -> Arm:
+def true_arm_of(options: argparse.Namespace, job: Job) -> Arm:
     """What real servos of the simulated arm move. Errors: PlannerError."""
+    arm = job.arm
     if options.servos == "ideal":
         return arm
     if not options.true_arm:
-        return random_arm(with_usual_servos(arm), options.seed or 0)
+        return random_arm(with_usual_servos(arm), options.seed or 0, job.positions, job.trajectory.pen)
     true_arm = load_arm(options.true_arm)
     if true_arm.column_names != arm.column_names:
         raise UsageError(

@@ -5,9 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from planner.arrays import FloatArray
-from planner.error_model.calibration.parameters import Parameters
-from planner.error_model.chain import tips
-from planner.error_model.model import ErrorModel, Standing
 from planner.kinematics.projection import project
 from planner.redundancy.arm_model import ArmModel
 from planner.settings import CanvasKind
@@ -30,9 +27,3 @@ def drawn_joints(model: ArmModel) -> FloatArray:
     free, exact = project(model.kinematics, model.configuration_map().reference(places), places)
     joints: FloatArray = model.arm.complete(free[exact])
     return joints
-
-
-def jacobian_at(parameters: Parameters, model: ErrorModel, joints: FloatArray) -> FloatArray:
-    """(n, 3, n_parameters) of tips at joints (n, n_joints), each in the middle of its slack."""
-    told = np.column_stack([curve.told(joints[:, k]) for k, curve in enumerate(model.curves)])
-    return parameters.jacobian(model, tips(model.geometry, joints), Standing(joints, told, np.zeros_like(joints)))

@@ -14,10 +14,10 @@ from planner.arms.arm import Arm
 from planner.arms.slack import FRAME_S, delays_s, half_slack, leads_s
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.error_model.believed import believed
-from planner.error_model.calibration.parameters import SLACK_SD, Parameters
+from planner.error_model.calibration.parameters import Parameters
 from planner.error_model.cause import Cause, differing_lags, left_open, slack_of, unmeasured
 from planner.error_model.chain import tips
-from planner.error_model.drawn import jacobian_at
+from planner.error_model.left_open import errors_by, too_high_mm
 
 INK_MM = 1.5
 """A sprung pen leaves ink up to so far above the paper."""
@@ -28,8 +28,6 @@ _WAVES = 8
 _WAVE_MM = 70.0
 _WITHIN_S = 0.3
 _WORTH_A_WORD_MM = 0.005
-_CHOSEN = 200
-"""Configurations from which the errors of an arm that was never calibrated are told."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -110,6 +108,8 @@ def predicted(arm: Arm, played: Played, seed: int = 0) -> Prediction:
     tip_mm = _tips(arm, arms.play(played))
     whole = tip_mm + arms.fields
     drawn = played.stroke >= 0
+    if arm.accuracy is None:
+        whole[..., 2] -= too_high_mm(whole, drawn, random)[:, None]
     off = line.distances(whole)[:, drawn]
     height = whole[:, drawn, 2]
     missing = height > INK_MM
@@ -146,12 +146,10 @@ class _Arms:
     @staticmethod
     def drawn(arm: Arm, played: Played, random: np.random.Generator) -> _Arms:
         n = arm.n_joints
-        found, slack_sd, tip_sd = half_slack(arm), *_left_open(arm, played, random)
-        slack = np.maximum(found + slack_sd * random.normal(size=(_PLAYS, n)), 0.0)
+        slack_sd, fields = _left_open(arm, played, random)
+        slack = np.maximum(half_slack(arm) + slack_sd * random.normal(size=(_PLAYS, n)), 0.0)
         frame_s = np.array([FRAME_S if joint.servo else 0.0 for joint in arm.joints])
         lag_s = (delays_s(arm) - frame_s / 2) * np.exp(_LAG_SPREAD * random.normal(size=(_PLAYS, n)))
-        tips_mm = _tips(arm, played.meant[None])[0]
-        fields = np.stack([_field(tips_mm[:, :2], tip_sd, random) for _ in range(_PLAYS)])
         return _Arms(slack, lag_s, random.uniform(0.0, 1.0, (_PLAYS, n)) * frame_s, frame_s, fields)
 
     def play(self, played: Played) -> FloatArray:
@@ -205,14 +203,14 @@ def _tips(arm: Arm, joints: FloatArray) -> FloatArray:
 
 
 def _left_open(arm: Arm, played: Played, random: np.random.Generator) -> tuple[FloatArray, FloatArray]:
-    """sd of slack (n_joints,), and of the tip's place and height (3,) in mm, that the file leaves open."""
+    """What the file leaves open: sd of slack (n_joints,), and errors (_PLAYS, n, 3) in mm of tips at rest."""
     if arm.accuracy is not None:
-        return np.array(arm.accuracy.slack), np.array([arm.accuracy.tip_mm] * 2 + [arm.accuracy.height_mm])
-    model = believed(arm)
-    parameters = Parameters.of(model, arm)
-    joints = played.meant[random.integers(0, len(played.meant), _CHOSEN)]
-    variance = (jacobian_at(parameters, model, joints) ** 2 * parameters.sd**2).sum(axis=2).mean(axis=0)
-    return SLACK_SD * arm.per_file_unit, np.sqrt(variance)
+        places_mm = _tips(arm, played.meant[None])[0, :, :2]
+        tip_sd_mm = np.array([arm.accuracy.tip_mm] * 2 + [arm.accuracy.height_mm])
+        return np.array(arm.accuracy.slack), np.stack([_field(places_mm, tip_sd_mm, random) for _ in range(_PLAYS)])
+    parameters = Parameters.of(believed(arm), arm)
+    vectors = random.normal(size=(_PLAYS, len(parameters.sd))) * parameters.sd
+    return parameters.slack_of(parameters.sd), errors_by(parameters, vectors, played.meant)
 
 
 def _field(places_mm: FloatArray, sd_mm: FloatArray, random: np.random.Generator) -> FloatArray:

@@ -13,9 +13,9 @@ from planner.arrays import FloatArray
 from planner.error_model.believed import arm_of, believed
 from planner.error_model.calibration.fit import Fit, Marks, fit
 from planner.error_model.calibration.parameters import Parameters
-from planner.error_model.calibration.plausible import refuse_another_sheet, refuse_mirrored, wrong_direction
+from planner.error_model.calibration.plausible import POOR, refuse_another_sheet, refuse_mirrored, wrong_direction
 from planner.error_model.calibration.sheets import Sheet, marks_of
-from planner.error_model.drawn import drawn_joints, jacobian_at
+from planner.error_model.drawn import drawn_joints
 from planner.error_model.model import tips_at
 from planner.errors import CalibrationError
 from planner.redundancy.arm_model import ArmModel
@@ -84,8 +84,9 @@ def calibrate(arm: Arm, sheets: Sequence[Sheet]) -> Calibrated:
             "arm file says: the marks fit with its direction changed; mend the "
             "file, and draw the pattern anew",
         )
-    for sheet in sheets:
-        refuse_another_sheet(sheet.name, sheet.record, sheet.measured)
+    if found.noise > POOR:
+        for sheet in sheets:
+            refuse_another_sheet(sheet.name, sheet.record, sheet.measured)
     model = found.model
     for joint_, curve in zip(arm.joints, model.curves, strict=True):
         if not curve.is_monotone:
@@ -94,7 +95,7 @@ def calibrate(arm: Arm, sheets: Sequence[Sheet]) -> Calibrated:
                 f"the curve of joint {joint_.name} would not be monotone: its servo "
                 "cannot be so; measure again, or correct its table or its limits",
             )
-    sd = found.tip_sd_mm(jacobian_at(parameters, model, drawn_joints(ArmModel(arm))))
+    sd = found.tip_sd_mm(parameters.jacobian_at(drawn_joints(ArmModel(arm)), model))
     slack = parameters.slack_of(np.sqrt(np.diag(found.covariance)))
     accuracy = Accuracy(n_seen, _rms(sd[:, :2]), _rms(sd[:, 2]), tuple(slack.tolist()))
     names = [(sheet.name, int(number)) for sheet, of_sheet in zip(sheets, numbers, strict=True) for number in of_sheet]

@@ -9,23 +9,27 @@ from numpy.polynomial import legendre
 
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
-from planner.error_model.chain import TipChange
+from planner.error_model.chain import TipChange, tips
 from planner.error_model.model import ErrorModel, Standing
 
 _DEGREE_RAD = float(np.radians(1.0))
-CURVE_SD = (3.0, 3.0, 1.8, 1.4, 1.1, 0.9, 0.7, 0.5, 0.35, 0.25)
-"""Of the correction of a curve's coefficients, degrees (or mm for a slide)."""
-SLACK_SD = 0.8
-"""Degrees or mm."""
-LENGTH_SD_MM = 0.7
-TWIST_SD = 0.3
-BASE_SD = (2.5, 2.5, 1.5, 1.5, 0.5, 0.5)
+
+# How true arms of one make differ, degrees or mm: potentiometers of hobby servos, encoders of those on a bus.
+_POTENTIOMETER_SD = (1.2, 1.6, 1.8, 1.4, 1.1, 0.9, 0.7, 0.5, 0.35, 0.25)
+_ENCODER_SD = (1.2, 0.3, 0.3, 0.2, 0.2, 0.1, 0.1, 0.05, 0.05, 0.05)
+"""Of the correction of a curve's coefficients."""
+_SLACK_SD, _BUS_SLACK_SD = 0.8, 0.4
+_LENGTH_SD_MM = 0.6
+_TWIST_SD = 0.17
+_BASE_SD = (1.2, 1.2, 0.6, 0.6, 0.3, 0.3)
 """mm, then degrees."""
+
+CURVE_SIZE = len(_POTENTIOMETER_SD)
 BASE_ORDER = ("base x", "base y", "base height", "base yaw", "paper tilt x", "paper tilt y")
 FLATTEST, FLATNESS_SD = 0.4, 0.1
 """A curve is hardly ever flatter than so much of its mean slope; the sd of that."""
 _SLOPES = 21
-_RISE = legendre.legval(np.linspace(-1.0, 1.0, _SLOPES), legendre.legder(np.eye(len(CURVE_SD)))).T
+_RISE = legendre.legval(np.linspace(-1.0, 1.0, _SLOPES), legendre.legder(np.eye(CURVE_SIZE))).T
 """(_SLOPES, n_coefficients) slopes of the polynomials along the range of a curve."""
 _TIGHTEST = 1e-4
 """Slack is never below this, rad or mm."""
@@ -47,13 +51,13 @@ class Parameters:
         names: list[str] = []
         sd: list[float] = []
         geometry = prior.geometry
-        for name, revolute in zip(joints, geometry.revolute, strict=True):
+        for joint, revolute in zip(arm.joints, geometry.revolute, strict=True):
             unit = _DEGREE_RAD if revolute else 1.0
-            names += [f"{name} curve {k}" for k in range(len(CURVE_SD))]
-            sd += [value * unit for value in CURVE_SD]
-        for name, revolute in zip(joints, geometry.revolute, strict=True):
-            names.append(f"{name} slack")
-            sd.append(SLACK_SD * (_DEGREE_RAD if revolute else 1.0))
+            names += [f"{joint.name} curve {k}" for k in range(CURVE_SIZE)]
+            sd += [value * unit for value in (_ENCODER_SD if joint.bus else _POTENTIOMETER_SD)]
+        for joint, revolute in zip(arm.joints, geometry.revolute, strict=True):
+            names.append(f"{joint.name} slack")
+            sd.append((_BUS_SLACK_SD if joint.bus else _SLACK_SD) * (_DEGREE_RAD if revolute else 1.0))
         lengths = tuple(
             (kind, k)
             for k in range(len(joints))
@@ -61,16 +65,16 @@ class Parameters:
             if abs(value) > 1e-9
         )
         names += [f"{joints[k]} {kind}" for kind, k in lengths]
-        sd += [LENGTH_SD_MM] * len(lengths)
+        sd += [_LENGTH_SD_MM] * len(lengths)
         names += [f"{name} twist" for name in joints[:-1]]  # the last one turns a point
-        sd += [TWIST_SD * _DEGREE_RAD] * (len(joints) - 1)
+        sd += [_TWIST_SD * _DEGREE_RAD] * (len(joints) - 1)
         names += BASE_ORDER
-        sd += [*BASE_SD[:3], *(value * _DEGREE_RAD for value in BASE_SD[3:])]
+        sd += [*_BASE_SD[:3], *(value * _DEGREE_RAD for value in _BASE_SD[3:])]
         return Parameters(prior, tuple(names), np.array(sd), lengths)
 
     def model(self, vector: FloatArray) -> ErrorModel:
         """The model that a vector (n,) means."""
-        n, per = len(self.prior.curves), len(CURVE_SD)
+        n, per = len(self.prior.curves), CURVE_SIZE
         curves = tuple(
             replace(curve, coefficients=curve.coefficients + vector[k * per : (k + 1) * per])
             for k, curve in enumerate(self.prior.curves)
@@ -115,7 +119,7 @@ class Parameters:
     def values(self, vector: FloatArray) -> FloatArray:
         """(n,) what the entries of a vector (n,) come to: lengths, slack and the base in full, curves as changes."""
         model = self.model(vector)
-        n, per = len(model.curves), len(CURVE_SD)
+        n, per = len(model.curves), CURVE_SIZE
         geometry = model.geometry
         lengths = [(geometry.d_mm if kind == "d" else geometry.a_mm)[k] for kind, k in self.lengths]
         return np.concatenate((vector[: n * per], model.slack, lengths, geometry.alpha[:-1], geometry.base))
@@ -128,7 +132,7 @@ class Parameters:
     @property
     def slack_entries(self) -> slice:
         n = len(self.prior.curves)
-        return slice(n * len(CURVE_SD), n * (len(CURVE_SD) + 1))
+        return slice(n * CURVE_SIZE, n * (CURVE_SIZE + 1))
 
     def with_slack(self, vector: FloatArray, joint: int, slack: float) -> FloatArray:
         """(n,) the vector with another slack of one joint."""
@@ -139,7 +143,7 @@ class Parameters:
     def flatness(self, model: ErrorModel) -> tuple[FloatArray, FloatArray]:
         """How far curves are from rising everywhere: residuals (k,), 0 where a curve's slope is at least FLATTEST of
         its mean, and their derivatives (k, n). No potentiometer stands still while its servo turns."""
-        n, per = len(model.curves), len(CURVE_SD)
+        n, per = len(model.curves), CURVE_SIZE
         residuals, rows = np.zeros((n, _SLOPES)), np.zeros((n, _SLOPES, len(self.names)))
         for k, (curve, before) in enumerate(zip(model.curves, self.prior.curves, strict=True)):
             rise = _RISE / before.coefficients[1]
@@ -147,6 +151,13 @@ class Parameters:
             residuals[k] = np.maximum(short, 0.0)
             rows[k, :, k * per : (k + 1) * per] = np.where(short[:, None] > 0, rise / FLATNESS_SD, 0.0)
         return residuals.ravel(), rows.reshape(-1, len(self.names))
+
+    def jacobian_at(self, joints: FloatArray, model: ErrorModel | None = None) -> FloatArray:
+        """(m, 3, n) derivatives of tips at joints (m, n_joints), each in the middle of its slack, by the vector; of the
+        prior model where none is given."""
+        model = model or self.prior
+        told = np.column_stack([curve.told(joints[:, k]) for k, curve in enumerate(model.curves)])
+        return self.jacobian(model, tips(model.geometry, joints), Standing(joints, told, np.zeros_like(joints)))
 
     def jacobian(self, model: ErrorModel, change: TipChange, stands: Standing) -> FloatArray:
         """(m, 3, n) derivatives of tips by the vector."""

@@ -16,7 +16,7 @@ from planner.errors import CalibrationError
 
 _STRANGE_MM = 15.0
 """No arm that is built after its file draws most of its marks so far from where they are meant to be."""
-_POOR = 3.0
+POOR = 3.0
 """Marks are poorly explained where residuals are so many times larger than they were measured to be."""
 _BETTER = 0.4
 """Of the residuals: a fit with one joint turned round has to leave less."""
@@ -68,7 +68,7 @@ def _median_mm(off_mm: FloatArray) -> float:
 
 def wrong_direction(arm: Arm, parameters: Parameters, found: Fit, sets: Sequence[Marks]) -> int | None:
     """The joint whose direction has to be changed for the marks to be explained, if there is one."""
-    if found.noise <= _POOR:
+    if found.noise <= POOR:
         return None
     candidates = []
     for k in range(arm.n_joints):

@@ -18,7 +18,6 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.error_model.calibration.parameters import Parameters
 from planner.error_model.chain import tips
-from planner.error_model.drawn import jacobian_at
 from planner.error_model.pattern.candidates import Candidates
 
 MARK_SD_MM = 0.15
@@ -76,8 +75,7 @@ def _dragged(standing: FloatArray, to: FloatArray, slack: FloatArray) -> FloatAr
 def _jacobians(parameters: Parameters, joints: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Of tips with joints (n, n_joints): by the parameters, slack apart, (n, 3, n_parameters) and by joints (n, 3,
     n_joints)."""
-    model = parameters.prior
-    return jacobian_at(parameters, model, joints), tips(model.geometry, joints).by_joint
+    return parameters.jacobian_at(joints), tips(parameters.prior.geometry, joints).by_joint
 
 
 def _on_sides(parameters: Parameters, jacobians: FloatArray, by_joint: FloatArray, side: FloatArray) -> FloatArray:
