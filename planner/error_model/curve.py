@@ -14,8 +14,8 @@ from numpy.polynomial import legendre
 from planner.arrays import FloatArray
 
 DEGREE = 9
-_BEND_SD = (0.02, 0.012, 0.008, 0.005, 0.003, 0.002, 0.0015, 0.001)
-"""Prior of the coefficients from the second power on, in rad: potentiometers bend smoothly."""
+BEND_SD_DEG = (1.8, 1.4, 1.1, 0.9, 0.7, 0.5, 0.35, 0.25)
+"""Prior of the coefficients from the second power on: potentiometers bend smoothly."""
 _GRID = 400
 _FEWEST_ROWS = 5
 _LEAST_ROUGH = 1e-5
@@ -67,8 +67,13 @@ class Curve:
 
     @property
     def is_monotone(self) -> bool:
+        return self.flattest > 0
+
+    @property
+    def flattest(self) -> float:
+        """Its least slope as a share of the mean one; 0 or less where the curve turns back."""
         slope = self.slope(self.middle + self.half * np.linspace(-1.0, 1.0, _GRID))
-        return bool(np.all(slope > 0) or np.all(slope < 0))
+        return float((slope / slope.mean()).min())
 
 
 def smooth_curve(points: FloatArray, low: float, high: float, scale: float) -> Curve:
@@ -87,7 +92,7 @@ def smooth_curve(points: FloatArray, low: float, high: float, scale: float) -> C
     if points[-1, 0] >= high:
         near = np.vstack((near, [high, ends[1]]))
     curve = Curve(float(ends.mean()), float(np.ptp(ends)) / 2, np.zeros(DEGREE + 1))
-    bends = np.diag(_roughness(points) / (scale * np.array(_BEND_SD)))
+    bends = np.diag(_roughness(points) / (scale * np.radians(BEND_SD_DEG)))
     system = np.vstack((curve.basis(near[:, 1]), np.hstack((np.zeros((len(bends), 2)), bends))))
     right = np.concatenate((near[:, 0] / scale, np.zeros(len(bends))))
     coefficients = np.linalg.lstsq(system, right, rcond=None)[0]

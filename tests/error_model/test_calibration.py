@@ -119,6 +119,13 @@ def test_a_mark_that_is_far_off_is_named_and_not_believed(
     assert rms(errors_mm(found, true_arms[1], fresh)[0]) < clean + 0.1
 
 
+def test_marks_that_lie_further_off_than_they_can_are_doubted(sheet49: Drawn, true_arms: list[TrueArm]) -> None:
+    tips_mm = sheet49.tips_mm(true_arms[1])
+    assert not any("further" in line for line in warnings(calibrate(sheet49.arm, [sheet49.sheet(tips_mm)])))
+    said = warnings(calibrate(sheet49.arm, [sheet49.sheet(tips_mm, sd_mm=0.04)]))
+    assert any("times further from where the calibrated arm has them than their sd_mm allows" in line for line in said)
+
+
 def test_marks_that_were_exchanged_are_named(sheet49: Drawn, true_arms: list[TrueArm]) -> None:
     tips = sheet49.tips_mm(true_arms[1])
     tips[[4, 30]] = tips[[30, 4]]

@@ -13,7 +13,13 @@ from planner.arrays import FloatArray
 from planner.error_model.believed import arm_of, believed
 from planner.error_model.calibration.fit import Fit, Marks, fit
 from planner.error_model.calibration.parameters import Parameters
-from planner.error_model.calibration.plausible import POOR, refuse_another_sheet, refuse_mirrored, wrong_direction
+from planner.error_model.calibration.plausible import (
+    DOUBTFUL,
+    POOR,
+    refuse_another_sheet,
+    refuse_mirrored,
+    wrong_direction,
+)
 from planner.error_model.calibration.sheets import Sheet, marks_of
 from planner.error_model.drawn import drawn_joints
 from planner.error_model.model import tips_at
@@ -31,6 +37,9 @@ _TOUCHED_AGAIN = 2
 """So often it is told anew, with the arm as it is known by then, when the pen came to the paper."""
 _SWAPPED = 0.3
 """Of how far marks are off: two that are nearer than this to each other's places were exchanged."""
+_STANDING_STILL = 0.2
+"""Of its mean slope: a curve as flat as that, where marks are poorly explained, is held from turning back by its prior
+alone."""
 _GAUGE = 0.9
 """Correlation from which on two parameters can only be told together."""
 
@@ -88,8 +97,9 @@ def calibrate(arm: Arm, sheets: Sequence[Sheet]) -> Calibrated:
         for sheet in sheets:
             refuse_another_sheet(sheet.name, sheet.record, sheet.measured)
     model = found.model
+    too_flat = _STANDING_STILL if found.noise > DOUBTFUL else 0.0
     for joint_, curve in zip(arm.joints, model.curves, strict=True):
-        if not curve.is_monotone:
+        if curve.flattest <= too_flat:
             raise CalibrationError(
                 sheets[0].name,
                 f"the curve of joint {joint_.name} would not be monotone: its servo "

@@ -10,12 +10,13 @@ from numpy.polynomial import legendre
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.error_model.chain import TipChange, tips
+from planner.error_model.curve import BEND_SD_DEG
 from planner.error_model.model import ErrorModel, Standing
 
 _DEGREE_RAD = float(np.radians(1.0))
 
 # How true arms of one make differ, degrees or mm: potentiometers of hobby servos, encoders of those on a bus.
-_POTENTIOMETER_SD = (1.2, 1.6, 1.8, 1.4, 1.1, 0.9, 0.7, 0.5, 0.35, 0.25)
+_POTENTIOMETER_SD = (1.2, 1.6, *BEND_SD_DEG)
 _ENCODER_SD = (1.2, 0.3, 0.3, 0.2, 0.2, 0.1, 0.1, 0.05, 0.05, 0.05)
 """Of the correction of a curve's coefficients."""
 _SLACK_SD, _BUS_SLACK_SD = 0.8, 0.4

@@ -16,7 +16,7 @@ from planner.errors import CalibrationError
 
 _STRANGE_MM = 15.0
 """No arm that is built after its file draws most of its marks so far from where they are meant to be."""
-POOR = 3.0
+DOUBTFUL, POOR = 2.0, 3.0
 """Marks are poorly explained where residuals are so many times larger than they were measured to be."""
 _BETTER = 0.4
 """Of the residuals: a fit with one joint turned round has to leave less."""

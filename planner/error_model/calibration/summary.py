@@ -7,6 +7,7 @@ import numpy as np
 from planner.arrays import FloatArray
 from planner.error_model.calibration.calibrate import Calibrated
 from planner.error_model.calibration.parameters import Parameters
+from planner.error_model.calibration.plausible import DOUBTFUL
 from planner.error_model.prediction import Prediction
 
 
@@ -17,6 +18,11 @@ def warnings(found: Calibrated) -> list[str]:
         for outlier in found.outliers
     ]
     said += [f"marks {one} and {other} seem to be exchanged" for one, other in found.exchanged]
+    if found.fit.noise > DOUBTFUL:
+        said.append(
+            f"marks lie {found.fit.noise:.1f} times further from where the calibrated arm has them than their sd_mm "
+            f"allows, {found.fit.rms_mm:.2f} mm rms: were they measured well, and is every joint tight?"
+        )
     if not found.has_heights:
         said.append(
             "no heights were measured: ink may be missing where the pen is too high (plan measure reads the "
