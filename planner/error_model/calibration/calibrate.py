@@ -80,7 +80,7 @@ def calibrate(arm: Arm, sheets: Sequence[Sheet]) -> Calibrated:
             f"{n_seen} marks were seen; {FEWEST_MARKS} at least are needed, and 49 for half a millimetre",
         )
     for sheet in sheets:
-        refuse_mirrored(sheet.name, sheet.record, sheet.measured)
+        refuse_mirrored(sheet.name, sheet.record, sheet.measured, arm.joints[0].name)
     found = fit(parameters, sets)
     for _ in range(_TOUCHED_AGAIN if any(len(sheet.measured.touches.marks) for sheet in sheets) else 0):
         sets, numbers = zip(*(marks_of(arm, sheet, found.model) for sheet in sheets), strict=True)
@@ -107,7 +107,8 @@ def calibrate(arm: Arm, sheets: Sequence[Sheet]) -> Calibrated:
             )
     sd = found.tip_sd_mm(parameters.jacobian_at(drawn_joints(ArmModel(arm)), model))
     slack = parameters.slack_of(np.sqrt(np.diag(found.covariance)))
-    accuracy = Accuracy(n_seen, _rms(sd[:, :2]), _rms(sd[:, 2]), tuple(slack.tolist()))
+    # The mean, in which a corner that marks say nothing of does not drown all else.
+    accuracy = Accuracy(n_seen, float(sd[:, :2].mean()), float(sd[:, 2].mean()), tuple(slack.tolist()))
     names = [(sheet.name, int(number)) for sheet, of_sheet in zip(sheets, numbers, strict=True) for number in of_sheet]
     outliers = tuple(
         Outlier(*names[k], float(np.sqrt(np.nansum(found.residuals_mm[k] ** 2))))
@@ -146,10 +147,6 @@ def _exchanged(found: Fit, names: Sequence[tuple[str, int]], tips_mm: FloatArray
             if (swapped < _SWAPPED * np.hypot(*found.residuals_mm[[i, j], :2].T)).all():
                 pairs.append((names[i][1], names[j][1]))
     return tuple(pairs)
-
-
-def _rms(values: FloatArray) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def _untold(found: Fit) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ _BETTER = 0.4
 """Of the residuals: a fit with one joint turned round has to leave less."""
 
 
-def refuse_mirrored(name: str, record: Record, measured: Measured) -> None:
+def refuse_mirrored(name: str, record: Record, measured: Measured, first_joint: str) -> None:
     """Errors: CalibrationError where marks are the mirror image of what the record drew."""
     meant, drawn = _pairs(record, measured)
     if _median_mm(drawn - meant) > _STRANGE_MM and _misfit(meant * (1.0, -1.0), drawn) < _BETTER * _misfit(
@@ -30,8 +30,8 @@ def refuse_mirrored(name: str, record: Record, measured: Measured) -> None:
     ):
         raise CalibrationError(
             name,
-            "the marks are a mirror image of those of the record: was the photo mirrored, or "
-            "an axis measured the wrong way, or does the first joint turn the other way?",
+            "the marks are a mirror image of those of the record: was the photo mirrored, or an axis measured the "
+            f"wrong way, or does joint {first_joint} turn the other way than the arm file says?",
         )
 
 
@@ -70,14 +70,20 @@ def wrong_direction(arm: Arm, parameters: Parameters, found: Fit, sets: Sequence
     """The joint whose direction has to be changed for the marks to be explained, if there is one."""
     if found.noise <= POOR:
         return None
-    candidates = []
+    noises = []
     for k in range(arm.n_joints):
-        curves = list(parameters.prior.curves)
-        curves[k] = replace(curves[k], coefficients=-curves[k].coefficients)
-        turned = replace(parameters, prior=replace(parameters.prior, curves=tuple(curves)))
-        candidates.append(fit(turned, sets).noise)
-    best = int(np.argmin(candidates))
-    return best if candidates[best] < _BETTER * found.noise else None
+        about_zero = -parameters.prior.curves[k].coefficients
+        in_its_range = np.concatenate((-about_zero[:1], about_zero[1:]))
+        noises.append(min(_noise_with(parameters, k, other, sets) for other in (about_zero, in_its_range)))
+    best = int(np.argmin(noises))
+    return best if noises[best] < _BETTER * found.noise else None
+
+
+def _noise_with(parameters: Parameters, joint: int, coefficients: FloatArray, sets: Sequence[Marks]) -> float:
+    """What residuals ask for where one joint has another curve."""
+    curves = list(parameters.prior.curves)
+    curves[joint] = replace(curves[joint], coefficients=coefficients)
+    return fit(replace(parameters, prior=replace(parameters.prior, curves=tuple(curves))), sets).noise
 
 
 def _misfit(meant: FloatArray, drawn: FloatArray) -> float:
