@@ -191,11 +191,14 @@ def test_what_cannot_be_is_refused(sheet49: Drawn, fresh: Drawn, true_arms: list
         )
 
 
-@pytest.mark.parametrize("joint", [1, 3])
-def test_a_joint_that_turns_the_other_way_is_named(joint: int, sheet49: Drawn, true_arms: list[TrueArm]) -> None:
-    true = true_arms[0]
+@pytest.mark.parametrize(("joint", "in_its_range"), [(1, False), (3, False), (2, True)])
+def test_a_joint_that_turns_the_other_way_is_named(
+    joint: int, in_its_range: bool, sheet49: Drawn, true_arms: list[TrueArm]
+) -> None:
+    true, turned = true_arms[0], sheet49.arm.joints[joint]
     shape, sines = true.shape.copy(), true.sines.copy()
     shape[joint] *= -1
+    shape[joint, 0] += in_its_range * (turned.minimum + turned.maximum)
     sines[joint, :, 0] *= -1
     tips = sheet49.tips_mm(replace(true, shape=shape, sines=sines))
     with pytest.raises(CalibrationError, match=f"joint q{joint + 1} seems to turn the other way"):
