@@ -155,8 +155,10 @@ def _untold(found: Fit) -> tuple[str, ...]:
 
 
 def _gauges(found: Fit) -> tuple[tuple[str, str], ...]:
+    """Pairs that can only be told together; of one curve, whose shape is told by all of its terms, there are none."""
     sd = np.sqrt(np.diag(found.covariance))
     correlation = np.abs(found.covariance / np.outer(sd, sd))
     one, other = np.nonzero(np.triu(correlation > _GAUGE, k=1))
     names = found.parameters.names
-    return tuple((names[i], names[j]) for i, j in zip(one.tolist(), other.tolist(), strict=True))
+    pairs = ((names[i], names[j]) for i, j in zip(one.tolist(), other.tolist(), strict=True))
+    return tuple((a, b) for a, b in pairs if a.rsplit(" ", 1)[0] != b.rsplit(" ", 1)[0] or " curve " not in a)
