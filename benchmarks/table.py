@@ -20,7 +20,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks.targets import configurations, copp_socp, redundancy, scale, smooth, speed, whole
+from benchmarks.targets import configurations, copp_socp, far, redundancy, scale, smooth, speed, whole
 from benchmarks.targets.row import Row, markdown
 from benchmarks.targets.strokes import drawings
 from planner.arms.arm_file import load_arm
@@ -42,6 +42,7 @@ MEASURES: dict[str, Measure] = {
     "phases": lambda folder, _, settings: whole.phases_and_order(folder, settings),
     "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),
     "configurations": lambda _, drawing, settings: speed.configurations(drawing, settings),
+    "far": lambda _, __, ___: far.far_targets(),
     "end-to-end": lambda _, drawing, settings: speed.end_to_end(drawing, settings),
     "million-points": lambda _, drawing, settings: scale.many_strokes(drawing, settings),
     "long-stroke": lambda _, __, settings: scale.one_stroke(settings),

@@ -12,7 +12,6 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray, IntArray
 from planner.errors import PlanError
 from planner.head import PenInk
-from planner.kinematics.chain import Kinematics
 from planner.kinematics.limits import Limits
 from planner.pen_drawing import PenDrawing
 from planner.trajectory import TRAVELLING, Trajectory
@@ -88,8 +87,8 @@ def _ink(drawing: PenDrawing) -> PenInk:
 
 def _change(before: PenDrawing, after: PenDrawing, park: FloatArray | None) -> PenChange:
     return plan_pen_change(
-        _level(before),
-        _level(after),
+        before.context.model.level,
+        after.context.model.level,
         Limits.of(before.context.model.arm),
         before.rules,
         before.moves[-1].joints[-1],
@@ -97,11 +96,6 @@ def _change(before: PenDrawing, after: PenDrawing, park: FloatArray | None) -> P
         park,
         after.group.delay_s,
     )
-
-
-def _level(drawing: PenDrawing) -> Kinematics:
-    """Of the arm with that pen."""
-    return drawing.context.model.branches(drawing.context.settings.weights)[0].level
 
 
 def _drawn(drawing: PenDrawing) -> tuple[FloatArray, IntArray]:

@@ -175,7 +175,7 @@ def _strokes(
     if settings.skip_unreachable:
         n_taps = _drawn(strokes).taps
         strokes, lost_mm, lost_whole = clip_strokes(
-            strokes, _in_reach(branches), max(float(branch.radii_mm[-1]) for branch in branches)
+            strokes, _in_reach(branches), max(float(np.abs(branch.box_mm).max()) for branch in branches)
         )
         lost = LeftOut(lost_mm, n_taps - _drawn(strokes).taps)
         left_out += lost

@@ -99,14 +99,14 @@ def workspace_figure(arm: Arm, look: Look) -> Figure:
     from planner.workspace.reach import paper_in_reach
 
     model = ArmModel(arm)
-    reach_mm = paper_in_reach(model).reach_mm
+    ring_mm = paper_in_reach(model).ring_mm
     canvases = {}
     for kind in CanvasKind:
         try:
             canvases[kind] = canvas_of(model, kind, arm.pen.lift_mm).corners_arm_mm
         except PlanError:  # a narrow ring has no documented canvas
             continue
-    return plot_workspace(arm.name, paper_map(model), canvases, reach_mm, look)
+    return plot_workspace(arm.name, paper_map(model), canvases, ring_mm, look)
 
 
 def film_page(trajectory: Trajectory, arm: Arm) -> str:
@@ -148,7 +148,7 @@ def _paper_of(arm: Arm) -> tuple[FloatArray | None, tuple[float, float] | None]:
         paper = paper_in_reach(ArmModel(arm))
     except PlanError:
         return None, None
-    return paper.corners_arm_mm, paper.reach_mm
+    return paper.corners_arm_mm, paper.ring_mm
 
 
 def _tip_mm(trajectory: Trajectory, arm: Arm) -> FloatArray:

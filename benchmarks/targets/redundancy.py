@@ -15,17 +15,17 @@ from planner.arrays import FloatArray
 from planner.errors import PlanError
 from planner.kinematics.projection import Pins, project
 from planner.redundancy.arm_model import ArmModel
-from planner.redundancy.configuration_map import (
-    ConfigurationMap,
-    choice_of_configurations,
-    sharp_configuration_path,
-)
 from planner.redundancy.configuration_path import (
     cheapest_configuration_path,
     polished_configuration_path,
 )
 from planner.redundancy.configuration_tests import usable_configurations
 from planner.redundancy.cost import ConfigurationCost
+from planner.redundancy.ring_map import (
+    RingMap,
+    choice_of_configurations,
+    sharp_configuration_path,
+)
 from planner.redundancy.samples import on_ray
 from planner.settings import PlanSettings
 from tests.redundancy.path_cost import configuration_path_cost
@@ -88,7 +88,7 @@ def against_brute_force(drawing: Path, settings: PlanSettings) -> list[Row]:
 
 
 def per_stroke_designs(
-    cost: ConfigurationCost, configuration_map: ConfigurationMap, pool: FloatArray, strokes: list[FloatArray]
+    cost: ConfigurationCost, configuration_map: RingMap, pool: FloatArray, strokes: list[FloatArray]
 ) -> dict[str, Design]:
     """The same strokes by the map, by a dense search for each, and by the map polished for each."""
     configuration_paths: dict[str, list[tuple[FloatArray, FloatArray]]] = {"map": [], "per stroke": [], "both": []}

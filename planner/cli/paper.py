@@ -52,9 +52,8 @@ def paper(arguments: list[str]) -> int:
         from planner.plots.placement_sheet import plot_placement_sheet
 
         picture_format(options.output)
-        low, high = paper_in_reach(model).reach_mm
         figure, page = plot_placement_sheet(
-            canvas, board.sheet, (float(low), float(high)), model.arm.name, board.where().partition(";")[0]
+            canvas, board.sheet, paper_in_reach(model).ring_mm, model.arm.name, board.where().partition(";")[0]
         )
         save_figure(figure, options.output)
         lines.append(f"wrote {options.output}: print it on {page} at 100 %")

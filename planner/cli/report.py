@@ -63,7 +63,7 @@ def write_report_of(
         model,
         planned.drawing,
         check_result,
-        paper_in_reach(model).reach_mm,
+        paper_in_reach(model).ring_mm,
         expected,
         accuracy,
     )

@@ -72,7 +72,8 @@ def random_targets(kinematics: Kinematics, count: int, seed: int) -> Targets:
             configurations = configurations[kinematics.tool_axis(configurations)[:, 2] < 0]
         tips = kinematics.tip_mm(configurations)
         tips[:, 2] = 0.0
-        in_front = (tips[:, 0] >= 0) & (np.hypot(tips[:, 0], tips[:, 1]) >= arm.workspace.inner_radius_mm)
+        in_front = (tips[:, 0] >= 0) | (not kinematics.turns_over_paper)
+        in_front &= np.hypot(tips[:, 0], tips[:, 1]) >= arm.workspace.inner_radius_mm
         configurations, tips = configurations[in_front], tips[in_front]
         configurations, exact = project(kinematics, configurations, tips)
         found = np.concatenate((found, tips[exact][usable_configurations(kinematics, configurations[exact])]))

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from planner.arms.arm import JointKind, PenHold
+from planner.arms.arm import PenHold
 from planner.arrays import FloatArray
 from planner.kinematics.chain import Kinematics
 from planner.kinematics.limits import within_limits
@@ -30,7 +30,7 @@ class Guesses:
     def __init__(self, kinematics: Kinematics) -> None:
         self._kinematics = kinematics
         arm = kinematics.arm
-        self._turns = arm.joints[0].kind is JointKind.REVOLUTE and 0 in arm.independent_joints
+        self._turns = kinematics.turns_over_paper
         self._low, self._high = kinematics.independent_of(arm.minimum), kinematics.independent_of(arm.maximum)
 
     def turned(self, target_mm: FloatArray, configuration: FloatArray) -> FloatArray:

@@ -18,6 +18,8 @@ from planner.kinematics.dh_row import dh_entries
 from planner.kinematics.link_clearance import LinkClearance
 
 _PROBES = 32
+_NEARLY_SQUARE_RAD = float(np.radians(5.0))
+"""Up to so far from square to the first joint's axis the paper counts as level to it."""
 
 
 class Kinematics:
@@ -44,16 +46,36 @@ class Kinematics:
     def clearance(self) -> LinkClearance:
         return LinkClearance(self.arm, self.nodes_mm)
 
+    @property
+    def turns_over_paper(self) -> bool:
+        """Whether the first joint turns the whole arm about the paper's normal, or nearly so, and nothing else: what is
+        done at one place is then done all around."""
+        arm = self.arm
+        alone = 0 in arm.independent_joints and all(
+            other != 0 for coupling in arm.couplings for other, _ in coupling.coefficients
+        )
+        square = arm.paper.T_base_paper[2, 2] >= np.cos(_NEARLY_SQUARE_RAD)
+        return arm.joints[0].kind is JointKind.REVOLUTE and alone and bool(square)
+
     def _pointing(self) -> list[casadi.SX]:
-        """The horizontal components of the tool axis that are not zero by construction."""
-        turn = self.joints[0] if self.arm.joints[0].kind is JointKind.REVOLUTE else 0
-        c, s = casadi.cos(turn), casadi.sin(turn)
-        axis = casadi.DM(self.arm.paper.T_base_paper[:3, :3]) @ self.axis
-        components = casadi.vertcat(c * axis[0] + s * axis[1], c * axis[1] - s * axis[0])
-        probe = casadi.Function("probe", [self.independent], [components])
+        """The horizontal components of the tool axis that are not zero by construction: seen from the turning base, or
+        from a joint that stays level and square to the tool axis, if one does."""
+        if self.turns_over_paper:
+            c, s = casadi.cos(self.joints[0]), casadi.sin(self.joints[0])
+            axis = casadi.DM(self.arm.paper.T_base_paper[:3, :3]) @ self.axis
+            return self._not_always_zero(casadi.vertcat(c * axis[0] + s * axis[1], c * axis[1] - s * axis[0]))
+        for frame in self.frames[:-1]:
+            side = frame[:3, 2]
+            if not self._not_always_zero(casadi.vertcat(side[2], casadi.dot(side, self.axis))):
+                return self._not_always_zero(side[1] * self.axis[0] - side[0] * self.axis[1])
+        return self._not_always_zero(self.axis[:2])
+
+    def _not_always_zero(self, values: casadi.SX) -> list[casadi.SX]:
+        """Those of the values that some configuration makes other than zero."""
+        probe = casadi.Function("probe", [self.independent], [values])
         configurations = np.random.default_rng(0).uniform(-np.pi, np.pi, (self.n_independent, _PROBES))
         largest = np.abs(np.array(probe.map(_PROBES)(configurations))).max(axis=1)
-        return [components[row] for row in range(2) if largest[row] > 1e-9]
+        return [values[row] for row in range(values.shape[0]) if largest[row] > 1e-9]
 
     @property
     def n_independent(self) -> int:

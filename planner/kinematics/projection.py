@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from planner.arms.arm import JointKind
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.kinematics.chain import Kinematics
 
@@ -25,6 +26,12 @@ def joint_scale(kinematics: Kinematics) -> FloatArray:
     """(n_independent,) speeds of the independent joints: dividing by them measures configurations in seconds of joint
     motion."""
     return kinematics.independent_of(kinematics.arm.max_velocity)
+
+
+def turning_joints(kinematics: Kinematics) -> BoolArray:
+    """(n_independent,) which of the independent joints turn; the others slide."""
+    arm = kinematics.arm
+    return np.array([arm.joints[index].kind is JointKind.REVOLUTE for index in arm.independent_joints])
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -60,7 +67,8 @@ def project(
         target = np.column_stack((target, pins.values))
     scale = joint_scale(kinematics)
     squared_scale = scale**2
-    allowed = 0.5 * np.pi / scale.max()
+    fastest_turn = scale[turning_joints(kinematics)].max(initial=0.0)
+    allowed = 0.5 * np.pi / fastest_turn if fastest_turn else np.inf
     solution = reference.copy()
     best = np.full(len(reference), np.inf)
     moved = np.full(len(reference), np.inf)

@@ -29,11 +29,12 @@ _INK, _QUIET = "#000000", "#808080"
 
 
 def plot_placement_sheet(
-    canvas: Canvas, sheet: Canvas | None, reach_mm: tuple[float, float], arm_name: str, words: str
+    canvas: Canvas, sheet: Canvas | None, ring_mm: tuple[float, float] | None, arm_name: str, words: str
 ) -> tuple[Figure, str]:
     """The page, seen from behind the arm with its base at the bottom, and what paper it is for.
 
-    canvas: what is drawn on; sheet: the paper that lies there, if somebody said which; both arm mm. Errors: PlanError
+    canvas: what is drawn on; sheet: the paper that lies there, if somebody said which; both arm mm. ring_mm: inner and
+    outer radius of what the arm reaches, where that is a ring. Errors: PlanError
     where no paper that is made holds it.
     """
     shown = sheet or canvas
@@ -49,7 +50,8 @@ def plot_placement_sheet(
     axes.set_axis_off()
     axes.axvline(0.0, color=_QUIET, linewidth=0.4, dashes=(12, 4))
     _base(axes)
-    _reach(axes, reach_mm)
+    if ring_mm is not None:
+        _reach(axes, ring_mm)
     _rectangle(axes, canvas, dashes=(3, 2))
     if sheet is not None:
         _rectangle(axes, sheet)

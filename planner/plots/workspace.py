@@ -28,16 +28,18 @@ def plot_workspace(
     name: str,
     figures: PaperMap,
     canvases_mm: Mapping[CanvasKind, FloatArray],
-    reach_mm: tuple[float, float],
+    ring_mm: tuple[float, float] | None,
     look: Look = USUAL,
 ) -> Figure:
     """The ring with the canvases, and beside it two maps, all in arm millimetres: manipulability in parts of its
     greatest on the paper, and the tip's error along the paper per degree (or mm) of error of the joints.
 
     canvases_mm: corners (4, 2) of each, in order around it; the usable one is on the maps too.
-    reach_mm: inner and outer radius of the half ring.
+    ring_mm: inner and outer radius of the half ring, where what is reached is one.
     """
-    low, high = view_mm(list(canvases_mm.values()), reach_mm)
+    is_reached = np.isfinite(figures.manipulability)
+    reached = [np.column_stack((figures.x_mm[is_reached], figures.y_mm[is_reached]))] if ring_mm is None else []
+    low, high = view_mm([*canvases_mm.values(), *reached], ring_mm)
     slimness = float((high[0] - low[0]) / (high[1] - low[1]))
     greatest = float(np.nanmax(figures.manipulability))
     good_is_bright = look.colours.colour_map(_N_COLOURS)
@@ -55,31 +57,34 @@ def plot_workspace(
         map_height, ring_height = map_width * slimness, ring_width * slimness
         ring = sheet.panel(PAPER_LEFT, PAPER_BOTTOM, ring_width, ring_height)
         place_axes(ring, low, high, ring_width, look.colours)
-        _draw_canvases(ring, canvases_mm, reach_mm, look)
+        _draw_canvases(ring, canvases_mm, ring_mm, look)
         left = PAPER_LEFT + ring_width + _BETWEEN + PAPER_LEFT
         for place, (values, label, colour_map) in enumerate(maps):
             axes = sheet.panel(left, PAPER_BOTTOM + (1 - place) * (map_height + between), map_width, map_height)
             _draw_map(sheet, axes, figures, values, colour_map)
             place_axes(axes, low, high, map_width, look.colours)
             axes.set_title(label, loc="left", size=look.letter_pt, weight="bold")
-            axes.add_patch(half_ring(reach_mm, look.colours, face="none"))
+            if ring_mm is not None:
+                axes.add_patch(half_ring(ring_mm, look.colours, face="none"))
             if CanvasKind.USABLE in canvases_mm:
                 canvas = canvas_outline(canvases_mm[CanvasKind.USABLE], look.colours, face="none", edge="black")
                 axes.add_patch(canvas)
                 canvas.set_path_effects([withStroke(linewidth=2.2, foreground="white")])  # seen on dark and light
         error = figures.sideways_error_mm
         remark = (
-            f"reach {reach_mm[0]:.0f} to {reach_mm[1]:.0f} mm, seen from behind the base; "
+            ("" if ring_mm is None else f"reach {ring_mm[0]:.0f} to {ring_mm[1]:.0f} mm, ")
+            + "seen from behind the base; "
             f"a degree of error in a joint is {np.nanmin(error):.2f} to {np.nanmax(error):.2f} mm, rms"
         )
         return sheet.finish(f"workspace of {name}", remark, ring.get_legend_handles_labels()[0], _TITLE)
 
 
 def _draw_canvases(
-    axes: Axes, canvases_mm: Mapping[CanvasKind, FloatArray], reach_mm: tuple[float, float], look: Look
+    axes: Axes, canvases_mm: Mapping[CanvasKind, FloatArray], ring_mm: tuple[float, float] | None, look: Look
 ) -> None:
     colours = look.colours
-    axes.add_patch(half_ring(reach_mm, colours))
+    if ring_mm is not None:
+        axes.add_patch(half_ring(ring_mm, colours))
     styles = {
         CanvasKind.DOCUMENTED: (colours.limit, LIMIT_DASHES),
         CanvasKind.OPTIMAL: (colours.lifting, (0, (1, 1))),

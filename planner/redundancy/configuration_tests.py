@@ -19,6 +19,9 @@ LIMIT_MARGIN = 0.02
 LINK_CLEARANCE_MM = 1.0
 """Clearance that configurations leave between links that have a thickness, for the same."""
 
+_STILL_MM_S = 1e-6
+"""A tip that is slower cannot move that way at all."""
+
 _NEAR_LIMIT = 3.0
 """A limit is near where so many lifts would pass it."""
 _CURVED = 1.1
@@ -84,6 +87,11 @@ def _pen_points_down(kinematics: Kinematics, independent: FloatArray) -> BoolArr
     return down
 
 
+def _is_free(kinematics: Kinematics, independent: FloatArray) -> BoolArray:
+    free: BoolArray = slowest_direction_mm_s(kinematics, independent) >= _STILL_MM_S
+    return free
+
+
 def _is_quick(kinematics: Kinematics, independent: FloatArray) -> BoolArray:
     quick: BoolArray = slowest_direction_mm_s(kinematics, independent) >= kinematics.arm.workspace.min_tip_speed_mm_s
     return quick
@@ -122,17 +130,25 @@ def _may_be_raised(kinematics: Kinematics, independent: FloatArray) -> BoolArray
     return room
 
 
+QUICK = ConfigurationTest(
+    _is_quick,
+    "cannot move the tip fast enough in every direction",
+    "lower workspace.min_tip_speed_mm_s, or raise the joints' max_velocity",
+)
+FREE = ConfigurationTest(
+    _is_free,
+    "have a direction that no joint moves the tip in",
+    "give the arm joints that move it along and across the paper and off it: check theta_deg, alpha_deg and [paper]",
+)
+"""What is not free is not quick either: this tells it apart where an arm is refused."""
+
 TESTS = (
     ConfigurationTest(
         _keeps_limits, "have a joint beyond its limits or nearly so", "widen these limits, or change theta_deg"
     ),
     ConfigurationTest(_links_above_paper, "have a joint below the paper", "raise the base (d_mm of the first joint)"),
     ConfigurationTest(_pen_points_down, "have the pen pointing up", "turn pen.tool_axis around"),
-    ConfigurationTest(
-        _is_quick,
-        "cannot move the tip fast enough in every direction",
-        "lower workspace.min_tip_speed_mm_s, or raise the joints' max_velocity",
-    ),
+    QUICK,
     ConfigurationTest(
         _links_apart, "bring links too close to each other or to the paper", "check thickness_mm of the links"
     ),

@@ -9,40 +9,53 @@ from planner.arms.arm import PenHold
 from planner.arrays import FloatArray
 from planner.errors import PlanError
 from planner.kinematics.chain import Kinematics
-from planner.kinematics.projection import project
-from planner.redundancy.configuration_tests import TESTS, within_margins
-from planner.redundancy.samples import on_ray, starts_for_rays, turned_into_range
+from planner.redundancy.configuration_tests import FREE, QUICK, TESTS, ConfigurationTest, within_margins
+from planner.redundancy.paper_samples import on_paper, outside_of_base, starts_for_paper
 
-_MOST_TRIED = 20_000
+_NOT_AT_BASE = ConfigurationTest(
+    lambda kinematics, found: outside_of_base(kinematics, kinematics.tip_mm(found)),
+    "have the pen nearer to the base than the inner radius",
+    "lower workspace.inner_radius_mm",
+)
 
 
 def no_usable_configuration(kinematics: Kinematics) -> PlanError:
     """The error of an arm without any, with counts, the cause that most of them have alone, and what to do."""
     arm = kinematics.arm
-    radii, rays, starts = starts_for_rays(kinematics)
+    starts = starts_for_paper(kinematics)
+    found = on_paper(kinematics, starts)
     rest = f"arm {arm.name}: no configuration puts the pen on the paper: "
     if not len(starts):
         return PlanError(rest + "pen.tool_axis never points down within the joint limits; turn it around")
-    chosen = np.unique(np.linspace(0, len(starts) - 1, min(_MOST_TRIED, len(starts))).astype(np.int64))
-    found, exact = project(kinematics, starts[chosen], on_ray(radii[rays[chosen]]))
-    found = turned_into_range(kinematics, found[exact])
-    tried = f"of {len(chosen)} tried at {radii[0]:g} mm or more from the base axis "
     if not len(found):
         held = " with the pen pointed straight down" if arm.pen.hold is PenHold.TOOL_AXIS else ""
         return PlanError(
-            rest + tried + f"none gets there{held}, joint limits aside; check d_mm and a_mm of the joints"
-            " and workspace.inner_radius_mm"
+            rest
+            + f"of {len(starts)} tried none gets there{held}, joint limits aside; check d_mm and a_mm of the joints"
         )
-    passed = np.array([test.kept(kinematics, found) for test in TESTS])
+    tests = (FREE, *TESTS, _NOT_AT_BASE)
+    passed = np.array([test.kept(kinematics, found) for test in tests])
+    passed[tests.index(QUICK)] |= ~passed[0]
     rejected = (~passed).sum(axis=1)
     alone = (~passed & ((~passed).sum(axis=0) == 1)).sum(axis=1)  # what giving up one test would leave
     worst = int((alone if alone.any() else rejected).argmax())
+    told = {0: _direction, 1: _joints}
     counts = [
-        f"{rejected[index]} {TESTS[index].rejects}{_joints(kinematics, found) if index == 0 else ''}"
+        f"{rejected[index]} {tests[index].rejects}{told[index](kinematics, found) if index in told else ''}"
         for index in np.argsort(-rejected, kind="stable").tolist()
         if rejected[index]
     ]
-    return PlanError(rest + tried + f"{len(found)} get there, and of these {', '.join(counts)}; {TESTS[worst].remedy}")
+    return PlanError(
+        rest + f"of {len(starts)} tried {len(found)} get there, and of these {', '.join(counts)}; {tests[worst].remedy}"
+    )
+
+
+def _direction(kinematics: Kinematics, found: FloatArray) -> str:
+    """Along which axis of the paper the tip does not move, where it is one for all."""
+    _, jacobian = kinematics.task_and_jacobian(found)
+    across = np.abs(np.linalg.svd(jacobian[:, :3])[0][:, :, -1]).min(axis=0)
+    axis = int(across.argmax())
+    return f" (along {'xyz'[axis]} of the paper)" if across[axis] > 1 - 1e-6 else ""
 
 
 def _joints(kinematics: Kinematics, found: FloatArray) -> str:

@@ -1,13 +1,13 @@
-"""Usable configurations along the ray of azimuth zero: what a configuration map is chosen from."""
+"""Usable configurations along a ray from the base axis, the paper's x axis: what a ring's map is chosen from."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from planner.arms.arm import JointKind, PenHold
+from planner.arms.arm import PenHold
 from planner.arrays import FloatArray, IntArray
 from planner.kinematics.chain import Kinematics
-from planner.kinematics.projection import project
+from planner.kinematics.projection import project, turning_joints
 from planner.redundancy.configuration_tests import usable_configurations
 
 COARSE_STEP_MM = 6.0
@@ -82,15 +82,12 @@ def _add_usable(
 
 def turned_into_range(kinematics: Kinematics, found: FloatArray) -> FloatArray:
     """Configurations (n, n_independent) with whole turns taken off where they mean nothing."""
-    joints = [kinematics.arm.joints[index] for index in kinematics.arm.independent_joints]
-    turning = np.array([joint.kind is JointKind.REVOLUTE for joint in joints])
-    if not kinematics.arm.couplings:  # whole turns mean nothing where no other joint counts them
-        middle = kinematics.independent_of((kinematics.arm.minimum + kinematics.arm.maximum) / 2)
-        found = found - 2 * np.pi * np.round((found - middle) / (2 * np.pi)) * turning
-    turn = (kinematics.arm.minimum[0] + kinematics.arm.maximum[0]) / 2 - np.pi
-    found = found.copy()
-    found[:, 0] = (found[:, 0] - turn) % (2 * np.pi) + turn
-    return found
+    arm = kinematics.arm
+    counted = {other for coupling in arm.couplings for other, _ in coupling.coefficients}
+    free = turning_joints(kinematics) & [index not in counted for index in arm.independent_joints]
+    middle = kinematics.independent_of((arm.minimum + arm.maximum) / 2)
+    turned: FloatArray = found - 2 * np.pi * np.round((found - middle) / (2 * np.pi)) * free
+    return turned
 
 
 def stretched_to_edges(

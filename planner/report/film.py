@@ -15,7 +15,7 @@ from planner.report.markup import Markup, element, joined
 _MOST_POSES = 8_000
 
 
-def film(motion: Motion, canvas_mm: FloatArray, reach_mm: tuple[float, float]) -> tuple[Markup, str]:
+def film(motion: Motion, canvas_mm: FloatArray, reach_mm: tuple[float, float] | None) -> tuple[Markup, str]:
     """The frame, and the hash of the one script in it as a content security policy writes it: the page around has to
     let it run, and nothing else."""
     looks = (Look.of(theme) for theme in Theme)

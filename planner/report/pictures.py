@@ -76,7 +76,7 @@ def pictures(
     model: ArmModel,
     drawing: Drawing,
     tip_mm: FloatArray,
-    reach_mm: tuple[float, float],
+    reach_mm: tuple[float, float] | None,
     settings: PlanSettings,
 ) -> Iterator[Picture]:
     """The others, in the order of the page. account: of the trajectory. tip_mm: (n_samples, 3). reach_mm: inner and

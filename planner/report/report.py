@@ -45,7 +45,7 @@ class Planned:
     model: ArmModel
     drawing: Drawing
     check_result: CheckResult
-    reach_mm: tuple[float, float]
+    reach_mm: tuple[float, float] | None
     expected: Prediction | None
     accuracy: str
 

@@ -1,10 +1,10 @@
 """Pen-up moves: lift, travel, lower, overlapping where the pen clears the paper.
 
 A travel move is two jerk-limited motions at once, both by Ruckig. The height goes up and, on short travel moves without
-a halt at the top, down again; the place over the paper moves from rest to rest along a straight line in (radius,
-azimuth) about the base axis, only while the tip is above the clearance height. Between paper and clearance the tip so
-moves straight up or down, above it both overlap. Configurations are those nearest to the straight line in joint space,
-raised the quickest way.
+a halt at the top, down again; the place over the paper moves from rest to rest along a straight line, in (radius,
+azimuth) about the base axis where the arm turns over its paper, only while the tip is above the clearance height.
+Between paper and clearance the tip so moves straight up or down, above it both overlap. Configurations are those
+nearest to the straight line in joint space, raised the quickest way.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def plan_travel_moves(
 ) -> list[TravelMove]:
     """Travel moves from each `start` to the `end` of the same index. Where one of the two is None the travel move
     begins, or ends, at the lift height above the other, as at the two ends of a drawing."""
-    axis_mm = kinematics.arm.paper.T_paper_base[:2, 3]
+    axis_mm = kinematics.arm.paper.T_paper_base[:2, 3] if kinematics.turns_over_paper else None
     shapes = [_Shape.of(rules, axis_mm, one, other) for one, other in zip(start, end, strict=True)]
     lifts = quickest_lifts(kinematics, limits.jerk, np.concatenate([shape.configurations for shape in shapes]))
     lifted = [replace(shape, lifts=pair) for shape, pair in zip(shapes, lifts.reshape(len(shapes), 2, -1), strict=True)]
@@ -179,26 +179,32 @@ def _held(kinematics: Kinematics, limits: Limits, plans: Sequence[_Timed], rules
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Shape:
-    """The two ends of a travel move in (radius, azimuth) about the base axis, which meets the paper at `axis_mm`, with
-    the independent joints there, how they raise the pen by a mm, and the heights there."""
+    """The two ends of a travel move, (2, 2), in (radius, azimuth) about the base axis, which meets the paper at
+    `axis_mm`, or in (x, y) where that is None; with the independent joints there, how they raise the pen by a mm, and
+    the heights there."""
 
-    axis_mm: FloatArray
-    polar: FloatArray
+    axis_mm: FloatArray | None
+    ends: FloatArray
     configurations: FloatArray
     lifts: FloatArray
     from_mm: float
     to_mm: float
 
     @staticmethod
-    def of(rules: TravelRules, axis_mm: FloatArray, start: Contact | None, end: Contact | None) -> _Shape:
+    def of(rules: TravelRules, axis_mm: FloatArray | None, start: Contact | None, end: Contact | None) -> _Shape:
         one, other = start or end, end or start
         assert one is not None and other is not None
-        tips = np.stack((one.tip_mm, other.tip_mm)) - axis_mm
-        polar = np.column_stack((np.hypot(*tips.T), np.arctan2(tips[:, 1], tips[:, 0])))
+        ends = np.stack((one.tip_mm, other.tip_mm))
         configurations = np.stack((one.configuration, other.configuration))
+        if axis_mm is not None:
+            x, y = (ends - axis_mm).T
+            azimuth = np.arctan2(y, x)
+            turns = (np.diff(configurations[:, 0]) - np.diff(azimuth)) / (2 * np.pi)
+            azimuth[1:] += 2 * np.pi * np.trunc(turns + np.copysign(0.25, turns))  # the way round that the joint goes
+            ends = np.column_stack((np.hypot(x, y), azimuth))
         return _Shape(
             axis_mm,
-            polar,
+            ends,
             configurations,
             np.zeros_like(configurations),
             0.0 if start else rules.lift_mm,
@@ -220,7 +226,7 @@ class _Shape:
     @property
     def is_still(self) -> bool:
         """Whether it ends over the place where it begins."""
-        return float(np.abs(self.polar[1] - self.polar[0]).max()) < 1e-9
+        return float(np.abs(self.ends[1] - self.ends[0]).max()) < 1e-9
 
     @property
     def contacts(self) -> tuple[bool, bool]:
@@ -229,7 +235,10 @@ class _Shape:
 
     def tip_mm(self, along: FloatArray, height_mm: FloatArray) -> FloatArray:
         """(n, 3) at fractions of the way and heights."""
-        radius, azimuth = (self.polar[0] + along[:, None] * (self.polar[1] - self.polar[0])).T
+        places = self.ends[0] + along[:, None] * (self.ends[1] - self.ends[0])
+        if self.axis_mm is None:
+            return np.column_stack((places, height_mm))
+        radius, azimuth = places.T
         x_mm, y_mm = self.axis_mm
         return np.column_stack((x_mm + radius * np.cos(azimuth), y_mm + radius * np.sin(azimuth), height_mm))
 

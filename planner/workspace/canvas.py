@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import casadi
 import numpy as np
@@ -21,12 +22,18 @@ from planner.kinematics.link_clearance import KEPT_MM
 from planner.kinematics.projection import project
 from planner.redundancy.arm_model import ArmModel
 from planner.redundancy.configuration_map import ConfigurationMap
+from planner.redundancy.ring_map import RingMap
 from planner.settings import CanvasKind
 
 _MOST_ITERATIONS = 3000
 _GRID_CELLS = 160
 _RADIAL_STEPS = 600
 _HEIGHTS = 7
+_ROUNDING = 1e-12
+_LEVEL = 0.99
+"""Cosine from which the base's z axis counts as square to the paper."""
+_SQUARES, _HEIGHTS_OF_SQUARES = 90, 3
+"""Of a map over the plane: along its longer side, and from the paper up to the lift height."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,8 +118,13 @@ def geometric_reach_mm(model: ArmModel) -> float:
     """Largest distance from the base axis at which the pen, held as the arm holds it, touches the paper, limits of
     turning joints aside: how far a joint slides is a length of the arm. For the drawing arm
     sqrt((L2+L3+L4)^2 - (L5-L1)^2): minus, where the documents print plus. Errors: PlanError where it is not found."""
-    arm, branches = model.arm, model.branches()
-    outermost = max(branches, key=lambda branch: branch.radii_mm[-1])
+    arm = model.arm
+    if not (rings := model.rings()):
+        raise PlanError(
+            f"arm {arm.name} does not turn about the normal of its paper, and reaches no ring that a documented or an"
+            " optimal canvas could lie in; try --canvas usable"
+        )
+    outermost = max(rings, key=lambda branch: branch.radii_mm[-1])
     kinematics = outermost.level
     solver = casadi.nlpsol(
         "reach",
@@ -145,14 +157,14 @@ def geometric_reach_mm(model: ArmModel) -> float:
 def usable_canvas(model: ArmModel, lift_mm: float) -> Canvas:
     """The largest axis-aligned rectangle where the pen gets to the paper and to the lift height
     with all joints within limits, clear of singularities and links apart, found on a grid and then grown."""
-    branches = model.branches()
-    sectors = [_Sector.of(branch, lift_mm) for branch in branches]
-    outer = max(float(branch.radii_mm[-1]) for branch in branches)
-    step = outer / _GRID_CELLS
-    x = np.arange(0.0, outer + step, step)
-    y = np.arange(-outer, outer + step, step)
-    inside = _in_any(sectors, np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1))
-    found = _largest_rectangle(inside)
+    regions = _regions(model, lift_mm)
+    low, high = np.min([region.box_mm[0] for region in regions], axis=0), np.max([r.box_mm[1] for r in regions], axis=0)
+    step = float((high - low).max()) / (2 * _GRID_CELLS)
+    x, y = (
+        middle + step * np.arange(-count, count + 1)
+        for middle, count in zip((low + high) / 2, np.ceil((high - low) / 2 / step - 1e-9).astype(int), strict=True)
+    )
+    found = _largest_rectangle(_in_any(regions, np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)))
     if found is None:
         raise PlanError(
             f"arm {model.arm.name} has no usable canvas: nowhere is the paper reached pen down and pen up"
@@ -166,7 +178,7 @@ def usable_canvas(model: ArmModel, lift_mm: float) -> Canvas:
         for side in range(4):
             trial = sides.copy()
             trial[side] += grow[side]
-            if _in_any(sectors, _border(trial)).all():
+            if _in_any(regions, _border(trial)).all():
                 sides, moved = trial, True
         if not moved:
             grow /= 2
@@ -187,48 +199,120 @@ def canvas_of(model: ArmModel, kind: CanvasKind, lift_mm: float) -> Canvas:
 def _canvas_of(model: ArmModel, kind: CanvasKind, lift_mm: float) -> Canvas:
     if kind is CanvasKind.USABLE:
         return usable_canvas(model, lift_mm)
-    innermost = min(float(branch.radii_mm[0]) for branch in model.branches())
-    r_max, r_min = geometric_reach_mm(model), max(model.arm.workspace.inner_radius_mm, innermost)
+    r_max = geometric_reach_mm(model)
+    r_min = max(model.arm.workspace.inner_radius_mm, min(float(branch.radii_mm[0]) for branch in model.rings()))
     return (documented_canvas if kind is CanvasKind.DOCUMENTED else optimal_canvas)(r_max, r_min)
+
+
+class _Region(Protocol):
+    """A part of the paper that one branch of an arm draws on."""
+
+    @property
+    def box_mm(self) -> FloatArray:
+        """(2, 2) corners that it lies between."""
+        ...
+
+    def contains(self, points_mm: FloatArray) -> BoolArray:
+        """(...) of points (..., 2)."""
+        ...
+
+
+def _regions(model: ArmModel, lift_mm: float) -> Sequence[_Region]:
+    rings = model.rings()
+    if rings:
+        return [_Sector.of(ring, rings[0].ahead_rad, lift_mm) for ring in rings]
+    patches = [_Patch.of(branch, lift_mm) for branch in model.branches()]
+    base = model.arm.paper.T_paper_base
+    if abs(base[2, 2]) < _LEVEL:
+        return patches
+    before = [patch.beyond(float(base[0, 3])) for patch in patches]  # the base stands beside the paper
+    return before if any(patch.good.any() for patch in before) else patches
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Patch:
+    """Where the map's configurations are within limits: the squares all of whose corners (columns, rows) are so."""
+
+    box_mm: FloatArray
+    step_mm: float
+    good: BoolArray
+
+    @staticmethod
+    def of(branch: ConfigurationMap, lift_mm: float) -> _Patch:
+        low, high = branch.box_mm
+        step_mm = float((high - low).max()) / _SQUARES
+        counts = np.ceil((high - low) / step_mm) + 1
+        x, y = (start + step_mm * np.arange(count) for start, count in zip(low, counts, strict=True))
+        points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+        rows = np.flatnonzero(branch.reaches(points))
+        for height in np.linspace(0.0, lift_mm, _HEIGHTS_OF_SQUARES):
+            tips = np.column_stack((points[rows], np.full(len(rows), height)))
+            configurations, kept = branch.configurations_at(tips)
+            rows = rows[kept & (branch.kinematics.clearance.least_mm(configurations)[0] >= KEPT_MM)]
+        good = np.zeros(len(points), dtype=np.bool_)
+        good[rows] = True
+        return _Patch(branch.box_mm, step_mm, good.reshape(len(x), len(y)))
+
+    def beyond(self, x_mm: float) -> _Patch:
+        """What of it lies beyond that x."""
+        x = self.box_mm[0, 0] + self.step_mm * np.arange(len(self.good))
+        return replace(self, good=self.good & (x >= x_mm)[:, None])
+
+    def contains(self, points_mm: FloatArray) -> BoolArray:
+        at = (points_mm - self.box_mm[0]) / self.step_mm
+        first = np.clip(np.floor(at).astype(np.int64), 0, np.array(self.good.shape) - 2)
+        inside: BoolArray = ((at >= 0) & (at <= np.array(self.good.shape) - 1)).all(axis=-1)
+        for i in range(2):
+            for j in range(2):
+                inside &= self.good[first[..., 0] + i, first[..., 1] + j]
+        return inside
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Sector:
-    """Where the map's configurations are within limits: for each radius an interval of azimuth."""
+    """Where the map's configurations are within limits: for each radius an interval of azimuth, as far as it is on the
+    side of the base that is `ahead_rad`; for the base stands beside the paper."""
 
-    configuration_map: ConfigurationMap
+    ring: RingMap
+    ahead_rad: float
     radii_mm: FloatArray
     from_rad: FloatArray
     to_rad: FloatArray
 
     @staticmethod
-    def of(configuration_map: ConfigurationMap, lift_mm: float) -> _Sector:
-        level = replace(configuration_map, kinematics=configuration_map.level)
+    def of(ring: RingMap, ahead_rad: float, lift_mm: float) -> _Sector:
+        level = replace(ring, kinematics=ring.level)
         arm, kinematics = level.arm, level.kinematics
-        radii = np.linspace(configuration_map.radii_mm[0], configuration_map.radii_mm[-1], _RADIAL_STEPS)
-        low, high = np.full(len(radii), -np.pi / 2), np.full(len(radii), np.pi / 2)
+        radii = np.linspace(ring.radii_mm[0], ring.radii_mm[-1], _RADIAL_STEPS)
+        low, high = np.full(len(radii), -np.inf), np.full(len(radii), np.inf)
         for height in np.linspace(0.0, lift_mm, _HEIGHTS):
             tips = np.column_stack((radii, np.zeros_like(radii), np.full_like(radii, height)))
             independent, exact = project(kinematics, level.reference(tips), tips)
             # The first joint, which turns the whole of it, is what the azimuth is bounded by.
             good = exact & (beyond_limits(arm, arm.complete(independent))[:, 1:] <= SLACK).all(axis=1)
             good &= kinematics.clearance.least_mm(independent)[0] >= KEPT_MM
-            low = np.where(good, np.maximum(low, arm.minimum[0] - independent[:, 0]), np.inf)
-            high = np.where(good, np.minimum(high, arm.maximum[0] - independent[:, 0]), -np.inf)
-        return _Sector(configuration_map, radii, low, high)
+            at_zero = independent[:, 0] - level.polar(tips)[1]
+            low = np.where(good, np.maximum(low, arm.minimum[0] - at_zero), np.inf)
+            high = np.where(good, np.minimum(high, arm.maximum[0] - at_zero), -np.inf)
+        return _Sector(ring, ahead_rad, radii, low, high)
+
+    @property
+    def box_mm(self) -> FloatArray:
+        return self.ring.box_mm
 
     def contains(self, points_mm: FloatArray) -> BoolArray:
         tips_mm = np.concatenate((points_mm, np.zeros_like(points_mm[..., :1])), axis=-1)
-        radius, azimuth = self.configuration_map.polar(tips_mm)
+        radius, azimuth = self.ring.polar(tips_mm)
         after = np.clip(np.searchsorted(self.radii_mm, radius), 1, len(self.radii_mm) - 1)
         inside: BoolArray = (radius >= self.radii_mm[0]) & (radius <= self.radii_mm[-1])
+        inside &= np.cos(azimuth - self.ahead_rad) >= -_ROUNDING
         for node in (after - 1, after):  # both neighbours have to agree
             inside &= (azimuth >= self.from_rad[node]) & (azimuth <= self.to_rad[node])
         return inside
 
 
-def _in_any(sectors: Sequence[_Sector], points_mm: FloatArray) -> BoolArray:
-    inside: BoolArray = np.any([sector.contains(points_mm) for sector in sectors], axis=0)
+def _in_any(regions: Sequence[_Region], points_mm: FloatArray) -> BoolArray:
+    inside: BoolArray = np.any([region.contains(points_mm) for region in regions], axis=0)
     return inside
 
 

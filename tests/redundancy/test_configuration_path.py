@@ -6,12 +6,12 @@ import numpy as np
 
 from planner.arrays import FloatArray
 from planner.kinematics.projection import Pins, project
-from planner.redundancy.configuration_map import (
+from planner.redundancy.configuration_tests import usable_configurations
+from planner.redundancy.cost import ConfigurationCost
+from planner.redundancy.ring_map import (
     choice_of_configurations,
     sharp_configuration_path,
 )
-from planner.redundancy.configuration_tests import usable_configurations
-from planner.redundancy.cost import ConfigurationCost
 from planner.redundancy.samples import on_ray
 from planner.settings import ConfigurationWeights
 from tests.arms.chains import load_once, model_of

@@ -7,8 +7,8 @@ import pytest
 
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
-from planner.redundancy.configuration_map import ConfigurationMap
 from planner.redundancy.cost import ConfigurationCost
+from planner.redundancy.ring_map import RingMap
 from planner.settings import ConfigurationWeights
 from tests.arms.chains import kinematics_of, load_once, model_of
 
@@ -24,7 +24,7 @@ def arm() -> Arm:
     return load_once("drawing_arm")
 
 
-def slopes(configuration_map: ConfigurationMap) -> FloatArray:
+def slopes(configuration_map: RingMap) -> FloatArray:
     """(n,) mean over the radius of the fastest joint's |dq/drho|, in deg/mm."""
     radii = np.linspace(40.0, 140.0, 200)
     tips = np.column_stack((radii, np.zeros((len(radii), 2))))
@@ -32,7 +32,7 @@ def slopes(configuration_map: ConfigurationMap) -> FloatArray:
     return np.degrees(np.abs(np.gradient(joints, radii, axis=0)).max(axis=1))
 
 
-def drawn_error(configuration_map: ConfigurationMap) -> float:
+def drawn_error(configuration_map: RingMap) -> float:
     """Mean over the radius of the square of the tip's way, height counted by half, that joints add by running late and
     by standing wrong at rest; by differences."""
     radii = np.linspace(configuration_map.radii_mm[0] + 2.0, configuration_map.radii_mm[-1] - 10.0, 200)
@@ -63,7 +63,7 @@ def test_sensitivity_makes_joints_spoil_less(name: str) -> None:
 
 
 def test_limits_keep_configurations_nearer_the_middle_of_their_ranges(arm: Arm) -> None:
-    def spread(configuration_map: ConfigurationMap) -> float:
+    def spread(configuration_map: RingMap) -> float:
         joints = arm.complete(configuration_map.configurations)
         return float((((joints - (arm.maximum + arm.minimum) / 2) / (arm.maximum - arm.minimum)) ** 2).mean())
 
