@@ -14,6 +14,7 @@ from planner.kinematics.projection import joint_scale, project
 from planner.workspace.canvas import usable_canvas
 from tests.arms.chains import kinematics_of, load_once, model_of, reachable_configurations, solver_of, tips_by_product
 from tests.arms.known_arms import KNOWN_ARMS
+from tests.arms.unusual_arms import PLANE_ARMS
 
 
 def test_solutions_are_on_target_and_within_limits(arm: Arm) -> None:
@@ -113,9 +114,9 @@ def test_settling_comes_nearer_to_where_a_further_solution_stays_and_is_counted(
     assert found[0].iterations[0] > found[1].iterations[0] > 0
 
 
-@pytest.mark.parametrize("name", ["drawing_arm", "scara", "so101", "ur5e"])
+@pytest.mark.parametrize("name", ["drawing_arm", "scara", "so101", "ur5e", "lift_drawing_arm", "board_six"])
 def test_every_random_target_in_reach_is_solved_from_the_start_with_the_pen_down(name: str) -> None:
-    arm = KNOWN_ARMS[name] if name in KNOWN_ARMS else load_once(name)
+    arm = (KNOWN_ARMS | PLANE_ARMS)[name] if name in KNOWN_ARMS | PLANE_ARMS else load_once(name)
     targets = random_targets(kinematics_of(arm), 60, 0).tips_mm
     kinematics = kinematics_of(arm)
     start = kinematics.independent_of(default_start(model_of(arm), TargetKind.RANDOM))
@@ -123,7 +124,8 @@ def test_every_random_target_in_reach_is_solved_from_the_start_with_the_pen_down
     assert found.converged.all()
     joints = arm.complete(found.configurations)
     assert ((joints >= arm.minimum - 1e-6) & (joints <= arm.maximum + 1e-6)).all()
-    assert np.linalg.norm(tips_by_product(arm, joints) - targets, axis=1).max() < 2e-3
+    tips = tips_by_product(arm, joints)
+    assert np.linalg.norm(tips - arm.paper.to_base(targets), axis=1).max() < 2e-3
     if arm.pen.hold is PenHold.TOOL_AXIS:
         assert (kinematics.tool_axis(found.configurations)[:, 2] < 0).all()
 
