@@ -5,18 +5,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from planner.arms.arm import PenHold
+from planner.arms.arm import Arm, PenHold
 from planner.arrays import FloatArray
 from planner.errors import PlanError
 from planner.kinematics.chain import Kinematics
 from planner.redundancy.configuration_tests import FREE, QUICK, TESTS, ConfigurationTest, within_margins
 from planner.redundancy.paper_samples import on_paper, outside_of_base, starts_for_paper
 
-_NOT_AT_BASE = ConfigurationTest(
-    lambda kinematics, found: outside_of_base(kinematics, kinematics.tip_mm(found)),
-    "have the pen nearer to the base than the inner radius",
-    "lower workspace.inner_radius_mm",
-)
+
+def _clear_of_base(arm: Arm) -> ConfigurationTest:
+    return ConfigurationTest(
+        lambda kinematics, found: outside_of_base(kinematics, kinematics.tip_mm(found)),
+        f"have the pen nearer to the base than {arm.workspace.inner_radius_mm:g} mm",
+        "lower workspace.inner_radius_mm",
+    )
 
 
 def no_usable_configuration(kinematics: Kinematics) -> PlanError:
@@ -33,7 +35,7 @@ def no_usable_configuration(kinematics: Kinematics) -> PlanError:
             rest
             + f"of {len(starts)} tried none gets there{held}, joint limits aside; check d_mm and a_mm of the joints"
         )
-    tests = (FREE, *TESTS, _NOT_AT_BASE)
+    tests = (FREE, *TESTS, _clear_of_base(arm))
     passed = np.array([test.kept(kinematics, found) for test in tests])
     passed[tests.index(QUICK)] |= ~passed[0]
     rejected = (~passed).sum(axis=1)
