@@ -160,10 +160,9 @@ def usable_canvas(model: ArmModel, lift_mm: float) -> Canvas:
     regions = _regions(model, lift_mm)
     low, high = np.min([region.box_mm[0] for region in regions], axis=0), np.max([r.box_mm[1] for r in regions], axis=0)
     step = float((high - low).max()) / (2 * _GRID_CELLS)
-    x, y = (
-        middle + step * np.arange(-count, count + 1)
-        for middle, count in zip((low + high) / 2, np.ceil((high - low) / 2 / step - 1e-9).astype(int), strict=True)
-    )
+    middle = (low + high) / 2
+    count = int(np.ceil((high - low)[0] / 2 / step - 1e-9))
+    x, y = middle[0] + step * np.arange(-count, count + 1), np.arange(low[1], high[1] + step, step)
     found = _largest_rectangle(_in_any(regions, np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)))
     if found is None:
         raise PlanError(
