@@ -38,7 +38,7 @@ def configuration_description(arm: Arm, joints: FloatArray, in_frame: int = 0) -
             if not arm.minimum[index] - _SLACK <= value <= arm.maximum[index] + _SLACK
         ],
         "coupling_error_deg": _named(
-            [names[coupling.joint] for coupling in arm.couplings], np.degrees(_coupling_errors(arm, joints))
+            [names[coupling.joint] for coupling in arm.couplings], _coupling_errors(arm, joints)
         ),
         "tip_mm": rounded(frame[:3, 3]),
         "rotation": rounded(frame[:3, :3]),
@@ -75,7 +75,8 @@ def configuration_lines(arm: Arm, configuration: dict[str, Any]) -> list[str]:
     if configuration["coupling_error_deg"]:
         off = {name: error for name, error in configuration["coupling_error_deg"].items() if abs(error) > 1e-4}
         lines.append(
-            "coupling: " + ("; ".join(f"{name} is off by {error:g} deg" for name, error in off.items()) or "kept")
+            "coupling: "
+            + ("; ".join(f"{name} is off by {error:g} {units[name]}" for name, error in off.items()) or "kept")
         )
     lines += ["", f"Jacobian of the pen in frame {frame} (mm and rad, per rad or mm of the joint)"]
     lines += [f"  {'':2}  " + "  ".join(f"{name:>10}" for name in units)]
@@ -111,9 +112,9 @@ def configuration_lines(arm: Arm, configuration: dict[str, Any]) -> list[str]:
 
 
 def _coupling_errors(arm: Arm, joints: FloatArray) -> FloatArray:
-    """(n_couplings,) rad by which mimic joints differ from what the others make them."""
+    """(n_couplings,) deg or mm by which mimic joints differ from what the others make them."""
     wanted = arm.complete(joints[list(arm.independent_joints)])
-    error: FloatArray = (joints - wanted)[[coupling.joint for coupling in arm.couplings]]
+    error: FloatArray = arm.to_file_units(joints - wanted)[[coupling.joint for coupling in arm.couplings]]
     return error
 
 

@@ -193,6 +193,11 @@ def choice_of_configurations(
             " one that turns about the vertical by itself, as the canvas and all configurations are found along"
             " one line from the base and turned from there"
         )
+    if not first.origin.is_identity:
+        raise PlanError(
+            f"arm {arm.name} cannot be planned for: its first joint, {first.name}, has an origin, and has to turn about"
+            " the vertical through the base"
+        )
     if any(other == 0 for coupling in arm.couplings for other, _ in coupling.coefficients):
         raise PlanError(
             f"arm {arm.name}: joint {first.name} turns the arm about the vertical axis; no coupling may depend on it"
