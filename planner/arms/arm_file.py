@@ -233,27 +233,36 @@ def arm_file_text(name_or_file: str) -> str:
 def read_arm_file(path: Path) -> Arm:
     """Read, check and convert one arm file. Errors: ArmFileError with all faults."""
     try:
-        content = tomllib.loads(_text(path))
+        text = _text(path)
     except OSError as error:
         raise ArmFileError(str(path), [f"cannot be read: {error.strerror}"]) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
         raise ArmFileError(str(path), [f"is not TOML: {error}"]) from error
+    return arm_of_text(text, str(path))
+
+
+def arm_of_text(text: str, source: str) -> Arm:
+    """The arm of a file's text; `source` is what messages call it. Errors: as `read_arm_file`."""
+    try:
+        content = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ArmFileError(source, [f"is not TOML: {error}"]) from error
     except RecursionError as error:
-        raise ArmFileError(str(path), ["is not an arm: its values are nested too deeply"]) from error
+        raise ArmFileError(source, ["is not an arm: its values are nested too deeply"]) from error
     try:
         section = _ArmSection.model_validate(content)
     except ValidationError as error:
-        raise ArmFileError(str(path), _faults(error, content)) from error
+        raise ArmFileError(source, _faults(error, content)) from error
     faults = _contradictions(section)
     if faults:
-        raise ArmFileError(str(path), faults)
+        raise ArmFileError(source, faults)
     arm = _arm(section)
     if section.park is None:
         return arm
     parked = _parked(arm, section.park)
     faults = _beyond_limits(arm, parked)
     if faults:
-        raise ArmFileError(str(path), faults)
+        raise ArmFileError(source, faults)
     return replace(arm, park=tuple(parked.tolist()))
 
 

@@ -24,7 +24,7 @@ _RATES = {
 
 def arm_toml(arm: Arm, remarks: Iterable[str] = ()) -> str:
     """The text of an arm file, `remarks` as comments at its top."""
-    blocks = ["\n".join(f"# {line}" for line in remarks)] if remarks else []
+    blocks = ["\n".join(f"# {line}".rstrip() for line in remarks)] if remarks else []
     head = {"name": arm.name, "source": arm.source}
     if arm.closed_form:
         head["closed_form"] = arm.closed_form
