@@ -125,6 +125,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.serve import serve
 
             return serve(rest)
+        case "export":
+            from planner.cli.export import export
+
+            return export(rest)
         case "fonts":
             from planner.cli.fonts import fonts
 
