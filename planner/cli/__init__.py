@@ -137,6 +137,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.inkscape import inkscape
 
             return inkscape(rest)
+        case "step":
+            from planner.cli.step import step
+
+            return step(rest)
         case "jog":
             from planner.cli.jog import jog
 

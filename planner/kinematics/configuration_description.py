@@ -64,7 +64,7 @@ def configuration_description(arm: Arm, joints: FloatArray, in_frame: int = 0) -
 def configuration_lines(arm: Arm, configuration: dict[str, Any]) -> list[str]:
     """What `configuration_description` found, as lines to read."""
     units = {joint.name: joint.file_unit for joint in arm.joints}
-    frame = _frame_name(arm, configuration["jacobian_frame"])
+    frame = frame_name(arm, configuration["jacobian_frame"])
     x, y, z = configuration["tip_mm"]
     lines = [
         "configuration: "
@@ -97,11 +97,11 @@ def configuration_lines(arm: Arm, configuration: dict[str, Any]) -> list[str]:
         lines.append("singular: " + ("; ".join(configuration["shapes"]) or "in a way that no single joint tells"))
     resting = "pen" if any(row.startswith("w") for row in configuration["rows"]) else "tip"
     lines += [
-        f"internal motion, the {resting} at rest: {_motion(motion, units)}"
+        f"internal motion, the {resting} at rest: {motion_text(motion, units)}"
         for motion in configuration["internal_motion"]
     ]
     lines += [
-        f"impossible, in frame {frame}: {_velocity(velocity)}" for velocity in configuration["impossible_velocity"]
+        f"impossible, in frame {frame}: {velocity_text(velocity)}" for velocity in configuration["impossible_velocity"]
     ]
     lines.append(
         "tip error: "
@@ -138,15 +138,15 @@ def _in_file_units(arm: Arm, motions: FloatArray) -> FloatArray:
     return scaled
 
 
-def _frame_name(arm: Arm, frame: int) -> str:
+def frame_name(arm: Arm, frame: int) -> str:
     return {0: "0 (base)", arm.n_joints: f"{frame} (tool)"}.get(frame, str(frame))
 
 
-def _motion(motion: dict[str, float], units: dict[str, str]) -> str:
+def motion_text(motion: dict[str, float], units: dict[str, str]) -> str:
     return ", ".join(f"{name} {value:+.4g} {units[name]}" for name, value in motion.items() if abs(value) > 1e-6)
 
 
-def _velocity(weights: dict[str, float]) -> str:
+def velocity_text(weights: dict[str, float]) -> str:
     terms = {name: weight for name, weight in weights.items() if abs(weight) > 1e-6}
     if len(terms) == 1:
         return next(iter(terms))
