@@ -112,6 +112,7 @@ def position_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
                 int(samples[joint]),
                 bool(excess[joint] <= allowance[joint]),
                 f"within {low[joint]:g} and {high[joint]:g}",
+                middle=float(low[joint] + high[joint]) / 2,
             )
             for joint in range(arm.n_joints)
         ]
@@ -232,6 +233,7 @@ def _joint_finding(
     passed: bool | None = None,
     remark: str = "",
     per: str = "",
+    middle: float = 0.0,
 ) -> Finding:
     """A finding on a joint; passed, unless said otherwise, where worst is at most the limit."""
     stroke = int(trajectory.stroke[sample])
@@ -250,4 +252,5 @@ def _joint_finding(
         arm.joints[joint].file_unit + per,
         place,
         remark,
+        middle=middle,
     )
