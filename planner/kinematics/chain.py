@@ -19,8 +19,8 @@ from planner.kinematics.dh_row import dh_entries
 from planner.kinematics.link_clearance import LinkClearance
 
 _PROBES = 32
-_ZERO = 1e-9
-"""A horizontal component of a unit vector that is none."""
+_ZERO = 1e-4
+"""A horizontal component of a unit vector that is none: robot descriptions have right angles to four or five digits."""
 
 
 class Kinematics:
@@ -36,8 +36,8 @@ class Kinematics:
         matrix, constant = arm.coupling_matrix
         self.independent = casadi.SX.sym("q", len(arm.independent_joints))
         self.joints = casadi.sparsify(casadi.SX(matrix)) @ self.independent + constant
-        _, last, corners = _chain(arm, self.joints)
-        self.last = last
+        frames, last, corners = _chain(arm, self.joints)
+        self.frames, self.last = frames, last
         self.tip = last[:3, 3]
         self.axis = last[:3, :3] @ casadi.DM(arm.pen.tool_axis)
         self.task = casadi.vertcat(self.tip, *self._pointing()) if arm.pen.hold is PenHold.TOOL_AXIS else self.tip

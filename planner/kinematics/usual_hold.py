@@ -10,6 +10,8 @@ from planner.arms.arm import Arm, PenHold
 from planner.kinematics.chain import Kinematics
 
 _PROBES = 16
+_LEVEL = 1e-6
+"""What the height of a unit vector may change by that stays upright."""
 
 
 def with_hold(arm: Arm, hold: str) -> tuple[Arm, list[str]]:
@@ -24,7 +26,7 @@ def with_usual_hold(arm: Arm) -> tuple[Arm, list[str]]:
     kinematics = Kinematics(pointed)
     configurations = np.random.default_rng(0).uniform(-np.pi, np.pi, (_PROBES, kinematics.n_independent))
     upright = kinematics.tool_axis(configurations)[:, 2]
-    if kinematics.n_task == 3 and np.ptp(upright) < 1e-9:
+    if kinematics.n_task == 3 and np.ptp(upright) < _LEVEL:
         kept, _ = with_hold(arm, PenHold.CONSTRUCTION)
         if upright[0] < 0:
             return kept, []

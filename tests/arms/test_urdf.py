@@ -273,8 +273,10 @@ def test_the_pen_is_held_as_the_chain_allows(tmp_path: Path) -> None:
     assert arm.pen.hold is PenHold.CONSTRUCTION and arm.pen.tool_axis == (0.0, 0.0, -1.0) and len(remarks) == 1
     pitches = [joint(f"q{k}", "revolute", "abcde"[k], "abcde"[k + 1], 'xyz="0.1 0 0"', "0 1 0") for k in (1, 2, 3)]
     pan = joint("q0", "revolute", "a", "b", 'xyz="0.02 0 0.1" rpy="3.141592653589793 0 0.4"')
-    arm, remarks = with_usual_hold(read(robot(pan, *pitches, links="abcde"), tmp_path).arm)
-    assert arm.pen.hold is PenHold.TOOL_AXIS and not remarks  # its axis stays in a plane: four joints are enough
+    for right_angle in ("3.141592653589793", "3.14159"):  # as descriptions have it
+        text = robot(pan.replace("3.141592653589793", right_angle), *pitches, links="abcde")
+        arm, remarks = with_usual_hold(read(text, tmp_path).arm)
+        assert arm.pen.hold is PenHold.TOOL_AXIS and not remarks  # its axis stays in a plane: four joints are enough
     arm, remarks = with_usual_hold(read(robot(pan, *pitches[:2], links="abcd"), tmp_path).arm)
     assert arm.pen.hold is PenHold.FREE and "tilt" in remarks[0]
 
