@@ -168,6 +168,17 @@ def _table(arm: dict[str, Any], refusal: str) -> list[str]:
         rows.append((joint["name"], joint["kind"], *map(_number, numbers), joint["unit"]))
     lines = _columns(rows)
     lines.append("(theta and alpha in deg, d and a in mm; limits in the joint's unit, per s, s2 and s3)")
+    lines += [
+        f"{what}: {_placed(values)}"
+        for what, values in (
+            *(
+                (f"origin of {joint['name']}", dh.get("origin"))
+                for joint, dh in zip(arm["joints"], arm["dh"], strict=True)
+            ),
+            ("tool", arm.get("tool")),
+        )
+        if values
+    ]
     thick = [
         f"{joint['name']} {_number(joint['thickness_mm'])} mm" for joint in arm["joints"] if "thickness_mm" in joint
     ]
@@ -178,7 +189,8 @@ def _table(arm: dict[str, Any], refusal: str) -> list[str]:
             f" {'+' if value >= 0 else '-'} {'' if abs(value) == 1 else f'{abs(value):g} '}{name}"
             for name, value in coupling["coefficients"].items()
         )
-        lines.append(f"coupling: {coupling['joint']} = {_number(coupling['constant_deg'])} deg{terms}")
+        unit = "mm" if "constant_mm" in coupling else "deg"
+        lines.append(f"coupling: {coupling['joint']} = {_number(coupling[f'constant_{unit}'])} {unit}{terms}")
     pen = arm["pen"]
     lines.append(
         f"pen: travels {_number(pen['lift_mm'])} mm above the paper, moves only straight up or down "
@@ -192,6 +204,12 @@ def _table(arm: dict[str, Any], refusal: str) -> list[str]:
     lines.append(f"reach: {_number(reach['min'])} to {_number(reach['max'])} mm from the base")
     lines.append(f"canvas: {_number(canvas['width_mm'])} x {_number(canvas['height_mm'])} mm, corners {corners} mm")
     return lines
+
+
+def _placed(values: dict[str, float]) -> str:
+    """An origin or the tool, such as `x 30 mm, yaw 90 deg`."""
+    told = ((*key.split("_"), _number(value)) for key, value in values.items())
+    return ", ".join(f"{axis} {number} {unit}" for axis, unit, number in told if number != "0")
 
 
 def _number(value: float) -> str:

@@ -79,9 +79,10 @@ def configuration_lines(arm: Arm, configuration: dict[str, Any]) -> list[str]:
             + ("; ".join(f"{name} is off by {error:g} {units[name]}" for name, error in off.items()) or "kept")
         )
     lines += ["", f"Jacobian of the pen in frame {frame} (mm and rad, per rad or mm of the joint)"]
-    lines += [f"  {'':2}  " + "  ".join(f"{name:>10}" for name in units)]
+    widths = [max(10, len(name)) for name in units]
+    lines += [f"  {'':2}  " + "  ".join(f"{name:>{width}}" for name, width in zip(units, widths, strict=True))]
     lines += [
-        f"  {name}  " + "  ".join(f"{value + 0.0:10.4f}" for value in row)
+        f"  {name}  " + "  ".join(f"{value + 0.0:{width}.4f}" for value, width in zip(row, widths, strict=True))
         for name, row in zip(ROW_NAMES, configuration["jacobian"], strict=True)
     ]
     lines += [

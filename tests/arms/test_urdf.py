@@ -292,6 +292,9 @@ def test_the_command_writes_a_file_that_plans_or_prints_it(tmp_path: Path, capfd
     assert capfd.readouterr().out == target.read_text(encoding="utf-8")
     assert main(["arm", str(target), "--json"]) == 0
     assert '"origin"' in capfd.readouterr().out
+    assert main(["arm", str(target)]) == 0
+    said = capfd.readouterr().out
+    assert "origin of p: x 100 mm, roll -90 deg" in said and "tool: z 50 mm, roll 90 deg" in said
     for wrong in (["-o", "x.txt"], ["scara"], ["--json"], ["--at", "1"], ["--tool-axis", "up"], ["--turn", "0"]):
         assert main(["arm", "--urdf", str(source), *wrong]) == 2
     assert main(["arm", "--tip", "c"]) == 2
