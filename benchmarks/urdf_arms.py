@@ -19,6 +19,23 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 _LONGEST = 150
+_LINKS = {
+    "alex_nub_hands": ("Torso", "LeftGripperYawLink"),
+    "baxter": ("torso", "left_wrist"),
+    "centauro": ("torso_2", "arm1_7"),
+    "g1_29dof_rev_1_0": ("torso_link", "left_rubber_hand"),
+    "human": ("left_clavicle", "left_hand"),
+    "icub": ("chest", "l_hand"),
+    "pr2": ("torso_lift_link", "l_wrist_roll_link"),
+    "romeo": ("torso", "l_wrist"),
+    "simple_humanoid": ("torso", "l_wrist"),
+    "so100": ("base", "gripper"),
+    "talos_reduced": ("torso_2_link", "arm_left_7_link"),
+    "tiago_dual": ("torso_lift_link", "arm_left_7_link"),
+    "tiago_pro": ("torso_lift_link", "arm_left_7_link"),
+    "z1": ("link00", "link06"),
+}
+"""Base and tip of one arm of robots that have several, or a gripper that looks like a joint of the arm."""
 
 
 def main() -> None:
@@ -43,20 +60,21 @@ def _tried(source: Path, options: argparse.Namespace) -> tuple[str, str]:
     """What came of a description: drawn, refused by import, plan or check, or a traceback; and what is to be told."""
     with tempfile.TemporaryDirectory() as folder:
         arm, trajectory = f"{folder}/arm.toml", f"{folder}/traj.csv"
-        made = _plan("arm", "--urdf", source, "--pen-length", options.pen_length, "-o", arm)
+        links = [word for pair in zip(("--base", "--tip"), _LINKS.get(source.stem, ()), strict=False) for word in pair]
+        made = _plan("arm", "--urdf", source, *links, "--pen-length", options.pen_length, "-o", arm)
         if made.returncode:
             return _fault(made, "no arm")
-        links = made.stdout.strip().partition(": ")[2]
+        chain = made.stdout.strip().partition(": ")[2]
         begin_s = os.times().children_user
         planned = _plan(options.drawing.resolve(), "--arm", arm, "-o", trajectory, "--quiet", *options.options)
         took_s = os.times().children_user - begin_s
         if planned.returncode:
             outcome, told = _fault(planned, "no plan")
-            return outcome, f"{links}: {told}"
+            return outcome, f"{chain}: {told}"
         checked = _plan("check", trajectory, "--drawing", options.drawing.resolve())
         if checked.returncode:
-            return "FAILED", f"{links}: {checked.stdout[:_LONGEST]}"
-        return "drawn", f"{links}, {took_s:.1f} s of processor; {checked.stdout.strip()[:_LONGEST]}"
+            return "FAILED", f"{chain}: {checked.stdout[:_LONGEST]}"
+        return "drawn", f"{chain}, {took_s:.1f} s of processor; {checked.stdout.strip()[:_LONGEST]}"
 
 
 def _fault(process: subprocess.CompletedProcess[str], refused: str) -> tuple[str, str]:
