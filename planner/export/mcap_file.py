@@ -9,7 +9,6 @@ import json
 from io import BytesIO
 from typing import IO, Any
 
-from planner import __version__
 from planner.errors import UsageError
 from planner.export.motion import Motion
 
@@ -41,7 +40,7 @@ def write_mcap(motion: Motion, file: IO[bytes]) -> None:
     """Topics /joint_states (rad, m, rad/s, m/s) and /pen, a message a sample, from time 0 on. Errors: UsageError."""
     packed = BytesIO()  # the writer goes back and forth, which a pipe does not
     writer = require_mcap()(packed)
-    writer.start(profile="", library=f"drawing-arm-planner {__version__}")
+    writer.start(profile="", library="drawing-arm-planner")
     states, pens = (
         writer.register_channel(
             topic=topic,
