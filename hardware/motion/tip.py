@@ -40,16 +40,20 @@ def tip_at(arm: Arm, joints: FloatArray) -> Tip:
 
 
 def link_nodes_mm(arm: Arm, positions: FloatArray) -> FloatArray:
-    """(n, 3 n_joints + 1, 3) where links bend at `positions` (n, n_joints), rad or mm: for each joint its origin, the
-    end of its offset d and the end of its length a, the last of all being the tip."""
+    """(n, n_nodes, 3) where links bend at `positions` (n, n_joints), rad or mm: for each joint its origin, if that is
+    some way off, the end of its offset d and the end of its length a; then the tip, if it is not at that end."""
     *links, tip = _links(arm, positions)
-    nodes = [node for link in links for node in (link.start.origin, link.bend, link.end.origin)]
-    return np.stack([*nodes, tip.end.origin], axis=1)
+    nodes = []
+    for joint, link in zip(arm.joints, links, strict=True):
+        nodes += [link.start.origin] if joint.origin.length_mm else []
+        nodes += [link.bend, link.end.origin]
+    nodes += [tip.end.origin] if arm.tool.length_mm else []
+    return np.stack(nodes, axis=1)
 
 
 def tips_mm(arm: Arm, positions: FloatArray, heights_mm: FloatArray | float = 0.0) -> FloatArray:
     """(n, 3) the tips of pens that stick out by `heights_mm` (n,) further than the one in the arm's file."""
-    last = _frames(arm, positions)[-1]
+    last = _links(arm, positions)[-1].end
     along_x, along_y, along_z = arm.pen.tool_axis
     axis = along_x * last.x + along_y * last.y + along_z * last.z
     tips: FloatArray = last.origin + np.reshape(heights_mm, (-1, 1)) * axis

@@ -74,7 +74,8 @@ def chain_poses(arm: Arm, positions: FloatArray, heights_mm: FloatArray | float 
     tool = along_x * x + along_y * y + along_z * z
     if np.any(heights_mm):
         node = nodes[-1] = node + heights_mm * tool
-        if rows[-2:] == [row, row]:  # of a last link along d and then along a, its bend goes as far along d
+        # Of a last link along d and then along a, its bend goes as far along d.
+        if rows[-2:] == [row, row] and not arm.tool.length_mm:
             nodes[-2] = nodes[-2] + heights_mm * (tool * offset).sum(axis=0) * offset
     corners = np.stack(nodes)
     heights = (corners[:-1] if rows else corners)[:, 2].copy()
