@@ -33,7 +33,7 @@ examples:
   plan arm my_arm.toml --json
   plan arm my_arm.toml --report my_arm
   plan arm scara --at 0 90 -120 -90 --frame 2
-  plan arm --urdf robot.urdf --base base_link --tip tool0 --pen-length 120 -o my_arm.toml"""
+  plan arm --urdf robot.urdf --base base_link --tip tool0 --pen-length 120 -o robot.toml"""
 
 _PAGE = "index.html"
 
