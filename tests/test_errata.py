@@ -16,6 +16,7 @@ import pytest
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.closed_forms import scara, six_joint, three_joint
+from planner.kinematics.frame_jacobian import frame_jacobian
 from planner.kinematics.joint_time import joint_time_s
 from planner.workspace.canvas import documented_canvas, geometric_reach_mm, optimal_canvas
 from tests.arms.chains import dh_frames, dh_matrix, kinematics_of, load_once, model_of
@@ -304,6 +305,95 @@ def test_elbow_of_the_six_joint_arm(decoupled: tuple[Arm, FloatArray, FloatArray
     assert abs(np.cos(joints[2]) - ratio) > 1e-3
     found = six_joint.at_pose(arm, pose[None]).configurations[0]
     np.testing.assert_allclose(np.sin(found[:, 2]), ratio, atol=1e-9)
+
+
+def test_middle_entry_of_a24(drawing: tuple[FloatArray, list[FloatArray]]) -> None:
+    joints, frames = drawing
+    (s3, s4), (c3, c4) = np.sin(joints[2:4]), np.cos(joints[2:4])
+    a24 = np.linalg.inv(frames[2]) @ frames[4]
+    assert a24[1, 1] == pytest.approx(-s3 * s4 + c3 * c4)
+    assert abs(a24[1, 1] - (-s3 * c4 + c3 * c4)) > OFF
+
+
+def test_third_row_of_a04_before_it_is_simplified(drawing: tuple[FloatArray, list[FloatArray]]) -> None:
+    """Its second entry begins with minus: plus is off by 2 s2 sin(q3 + q4)."""
+    joints, frames = drawing
+    (s2, s3, s4), (c2, c3, c4) = np.sin(joints[1:4]), np.cos(joints[1:4])
+
+    def entry(sign: float) -> float:
+        return float(sign * s2 * (c3 * s4 + s3 * c4) + c2 * (c3 * c4 - s3 * s4))
+
+    assert entry(-1.0) == pytest.approx(frames[4][2, 1])
+    assert entry(1.0) - frames[4][2, 1] == pytest.approx(2 * s2 * np.sin(joints[2] + joints[3]))
+
+
+def test_the_jacobian_has_a_column_for_each_joint(drawing: tuple[FloatArray, list[FloatArray]]) -> None:
+    """Columns for i = 1 to n, the last of them R_0^(n-1) k; one for n + 1 would be a turn that no joint makes."""
+    joints, frames = drawing
+    jacobian = frame_jacobian(load_once("drawing_arm"), joints[None])[0]
+    assert jacobian.shape == (6, 5)
+    step = 1e-6
+    for i in range(5):
+        np.testing.assert_allclose(jacobian[3:, i], frames[i][:3, 2], atol=1e-12)
+        moved = dh_frames(load_once("drawing_arm"), joints + step * np.eye(5)[i])[-1]
+        spin = (moved[:3, :3] @ frames[-1][:3, :3].T - np.eye(3)) / step
+        np.testing.assert_allclose([spin[2, 1], spin[0, 2], spin[1, 0]], jacobian[3:, i], atol=1e-5)
+
+
+def test_target_of_the_worked_example_on_the_arm() -> None:
+    """The canvas point (2, 8) cm: x of a rounded height beside y of an exact width is neither of the two."""
+    canvas = documented_canvas(R_MAX_MM, R_MIN_MM)
+
+    def arm_cm(width: float, height: float) -> tuple[float, float]:
+        return R_MIN_MM / 10 + height - 8.0, width / 2 - 2.0
+
+    exact = arm_cm(canvas.width_mm / 10, canvas.height_mm / 10)
+    np.testing.assert_allclose(exact, (5.38, 4.78), atol=5e-3)
+    np.testing.assert_allclose(arm_cm(13.6, 10.0), (5.3, 4.8), atol=1e-9)
+    for right in (exact, (5.3, 4.8)):
+        assert max(abs(5.3 - right[0]), abs(4.78 - right[1])) > 0.015
+
+
+def test_products_in_the_first_column_of_the_scara_s_jacobian() -> None:
+    """z of p x x2 and of p x y2, with p from the base to the tip, against the Jacobian in frame 2."""
+    arm = bare("scara")
+    joints = np.array([0.4, 0.9, -110.0, -0.3])
+    a1, a2 = (joint.a_mm for joint in arm.joints[:2])
+    q1, q12 = joints[0], joints[0] + joints[1]
+    c1, s1, c12, s12 = np.cos(q1), np.sin(q1), np.cos(q12), np.sin(q12)
+    x, y = a1 * c1 + a2 * c12, a1 * s1 + a2 * s12
+    column = frame_jacobian(arm, joints[None], None, 2)[0, :, 0]
+    assert column[0] == pytest.approx(x * s12 - y * c12)
+    assert abs(column[0] - (x * s12 + y * c12)) > OFF
+    assert column[1] == pytest.approx((a2 * c12 + a1 * c1) * c12 + (a2 * s12 + a1 * s1) * s12)
+    assert abs(column[1] - ((a2 * c12 + a1 * s1) * c12 + (a2 * s12 + a1 * s1) * s12)) > OFF
+
+
+def test_null_space_of_the_stretched_scara_s_transposed_jacobian() -> None:
+    """Its first two equations are in V2: with V1 in them V1 would be 0, and the result [1, 0, 0, 0] none."""
+    a1, a2 = 100.0, 70.0
+    jacobian = np.array([[0, 0, 0, 0], [a1 + a2, a2, 0, 0], [0, 0, 1, 0], [1, 1, 0, 1]])  # frame 2, q2 = 0
+    v1, v2, v3, wz = 0.3, -0.7, 0.2, 1.1
+    np.testing.assert_allclose(jacobian.T @ [v1, v2, v3, wz], [(a1 + a2) * v2 + wz, a2 * v2 + wz, v3, wz])
+    assert off(np.array([(a1 + a2) * v1 + wz, a2 * v1 + wz, v3, wz]), jacobian.T @ [v1, v2, v3, wz]) > OFF
+    assert not (jacobian.T @ [1, 0, 0, 0]).any()
+
+
+def test_first_two_transforms_of_the_scara() -> None:
+    frames = dh_frames(bare("scara"), np.array([0.4, 0.9, -110.0, -0.3]))
+    first, second = frames[1], np.linalg.inv(frames[1]) @ frames[2]
+    np.testing.assert_allclose(first @ second, frames[2], atol=1e-10)
+    assert off(np.linalg.inv(second) @ second, frames[2]) > OFF  # from 2 to 1 and on to 2: nothing
+
+
+def test_wrist_centre_of_the_six_joint_arm(decoupled: tuple[Arm, FloatArray, FloatArray]) -> None:
+    """p_m is where frames 4 and 5 begin, l4 before p_r, where frame 6 does; frame 3 begins at the elbow."""
+    arm, joints, pose = decoupled
+    frames = dh_frames(arm, joints)
+    centre = pose[:3, 3] - arm.joints[5].d_mm * pose[:3, 2]
+    for frame in (4, 5):
+        np.testing.assert_allclose(frames[frame][:3, 3], centre, atol=1e-9)
+    assert off(frames[6][:3, 3], centre) > OFF and off(frames[3][:3, 3], pose[:3, 3]) > OFF
 
 
 def test_the_chain_that_errata_are_measured_against_is_the_planner_s() -> None:

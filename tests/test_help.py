@@ -21,7 +21,7 @@ from tests.drawn_shapes import lines_svg
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = (
     *("", "batch", "lines", "run", "pattern", "calibrate", "predict", "jog", "measure"),
-    *("ports", "check", "plot", "compare", "fonts", "arm", "paper", "estimate", "config", "serve"),
+    *("ports", "check", "plot", "compare", "fonts", "arm", "paper", "estimate", "config", "serve", "export", "step"),
 )
 NOT_RUN = {
     "|": "a pipe of the shell",
@@ -39,6 +39,12 @@ NOT_RUN = {
     "--font": "it takes a font",
 }
 SVG = lines_svg('<path id="a" d="M2 2 5 4M7 7l1 0M1 1 8 1M3 3 8 3"/>', 'viewBox="0 0 9 9"')
+
+
+URDF = (
+    '<robot name="r"><link name="base_link"/><link name="tool0"/><joint name="j" type="continuous">'
+    '<parent link="base_link"/><child link="tool0"/><axis xyz="0 0 1"/></joint></robot>'
+)
 
 
 @dataclass(frozen=True)
@@ -87,6 +93,7 @@ def test_examples_are_accepted(made: Plan, tmp_path: Path, monkeypatch: pytest.M
         (tmp_path / f"{name}.svg").write_text(SVG)
     for name in ("my_arm", "my_arm_2"):
         shutil.copy(ROOT / "configs" / "drawing_arm.toml", tmp_path / f"{name}.toml")
+    (tmp_path / "robot.urdf").write_text(URDF)
     (tmp_path / "pens.toml").write_text('[[pen]]\nname = "blue"\n')
     (tmp_path / "moves.txt").write_text("show\nquit\n")
     made.trajectory.save(tmp_path / "traj.csv")

@@ -126,9 +126,9 @@ class MujocoArm:
 
 
 def model_of(arm: Arm) -> str:
-    """MJCF of the DH chain, in the frame of the paper; the base stands upright. Row (theta, d, a, alpha) is a body at
-    the end of the row before, turned by theta, whose joint turns about z or slides along it; its links go d along z and
-    then a along x. Joints are driven by position."""
+    """MJCF of the chain, in the frame of the paper; the base stands upright. Row (theta, d, a, alpha) is a body at the
+    joint's origin beyond the end of the row before, turned by theta, whose joint turns about z or slides along it; its
+    links go d along z, then a along x, then on to the next joint's origin. Joints are driven by position."""
     root = ElementTree.Element("mujoco", model=arm.name)
     ElementTree.SubElement(root, "compiler", angle="radian", autolimits="true")
     T_paper_base = arm.paper.T_paper_base
@@ -149,16 +149,13 @@ def model_of(arm: Arm) -> str:
         world, "geom", type="plane", size="0.4 0.4 0.01", rgba="0.96 0.95 0.92 1", contype="0", conaffinity="0"
     )
     actuators = ElementTree.SubElement(root, "actuator")
-    base = ElementTree.SubElement(
-        world,
-        "body",
-        pos=_spaced(T_paper_base[:3, 3] * _M),
-        xyaxes=_spaced(np.concatenate((T_paper_base[:3, 0], T_paper_base[:3, 1]))),
-    )
-    parent, place, tilt = base, "0 0 0", 0.0
+    parent = ElementTree.SubElement(world, "body", _placed(T_paper_base))
+    end = np.eye(4)
     for joint in arm.joints:
         slides = joint.kind is JointKind.PRISMATIC
-        body = ElementTree.SubElement(parent, "body", pos=place, quat=_turned(tilt, joint.theta_rad))
+        start = end @ joint.origin.matrix
+        _link(parent, end[:3, 3], start[:3, 3])
+        body = ElementTree.SubElement(parent, "body", _placed(start @ _dh_matrix(joint.theta_rad, 0.0, 0.0, 0.0)))
         low, high = (limit * (_M if slides else 1.0) for limit in (joint.minimum, joint.maximum))
         ElementTree.SubElement(
             body,
@@ -170,20 +167,10 @@ def model_of(arm: Arm) -> str:
             armature=f"{_ARMATURE}",
         )
         ElementTree.SubElement(actuators, "position", joint=joint.name, kp=f"{_STIFF}", dampratio="1")
-        d, a = joint.d_mm * _M, joint.a_mm * _M
-        for begin, end in (((0.0, 0.0, 0.0), (0.0, 0.0, d)), ((0.0, 0.0, d), (a, 0.0, d))):
-            if begin != end:
-                ElementTree.SubElement(
-                    body,
-                    "geom",
-                    type="capsule",
-                    size=f"{_LINK_RADIUS_M}",
-                    density=f"{_LINK_KG_M3}",
-                    contype="0",
-                    conaffinity="0",
-                    rgba="0.2 0.45 0.7 1",
-                    fromto=_spaced(np.array((*begin, *end))),
-                )
+        end = _dh_matrix(0.0, joint.d_mm, joint.a_mm, joint.alpha_rad)
+        bend = np.array([0.0, 0.0, joint.d_mm])
+        _link(body, np.zeros(3), bend)
+        _link(body, bend, end[:3, 3])
         # A joint that no link goes out from would have no mass at all.
         ElementTree.SubElement(
             body,
@@ -195,8 +182,10 @@ def model_of(arm: Arm) -> str:
             density=f"{_LINK_KG_M3}",
             rgba="0.25 0.25 0.28 1",
         )
-        parent, place, tilt = body, f"{a:.9g} 0 {d:.9g}", joint.alpha_rad
-    ElementTree.SubElement(parent, "site", name="tip", pos=place, size="0.001")
+        parent = body
+    tip = end @ arm.tool.matrix
+    _link(parent, end[:3, 3], tip[:3, 3])
+    ElementTree.SubElement(parent, "site", name="tip", pos=_spaced(tip[:3, 3] * _M), size="0.001")
     return ElementTree.tostring(root, encoding="unicode")
 
 
@@ -204,10 +193,34 @@ def _spaced(values: FloatArray) -> str:
     return " ".join(f"{value:.12g}" for value in values.tolist())
 
 
-def _turned(tilt_rad: float, theta_rad: float) -> str:
-    """Quaternion of Rx(tilt) Rz(theta)."""
-    cx, sx, cz, sz = np.cos(tilt_rad / 2), np.sin(tilt_rad / 2), np.cos(theta_rad / 2), np.sin(theta_rad / 2)
-    return f"{cx * cz:.12g} {sx * cz:.12g} {-sx * sz:.12g} {cx * sz:.12g}"
+def _placed(frame: FloatArray) -> dict[str, str]:
+    """Attributes of a body whose frame is this (4, 4) in its parent's, mm."""
+    return {"pos": _spaced(frame[:3, 3] * _M), "xyaxes": _spaced(np.concatenate((frame[:3, 0], frame[:3, 1])))}
+
+
+def _link(body: ElementTree.Element, begin_mm: FloatArray, end_mm: FloatArray) -> None:
+    """A capsule between two points (3,) of the body's frame, unless they are the same."""
+    if (begin_mm == end_mm).all():
+        return
+    ElementTree.SubElement(
+        body,
+        "geom",
+        type="capsule",
+        size=f"{_LINK_RADIUS_M}",
+        density=f"{_LINK_KG_M3}",
+        contype="0",
+        conaffinity="0",
+        rgba="0.2 0.45 0.7 1",
+        fromto=_spaced(np.concatenate((begin_mm, end_mm)) * _M),
+    )
+
+
+def _dh_matrix(theta_rad: float, d_mm: float, a_mm: float, alpha_rad: float) -> FloatArray:
+    """(4, 4) Rz(theta) Tz(d) Tx(a) Rx(alpha), mm."""
+    c, s, ca, sa = np.cos(theta_rad), np.sin(theta_rad), np.cos(alpha_rad), np.sin(alpha_rad)
+    return np.array(
+        [[c, -s * ca, s * sa, a_mm * c], [s, c * ca, -c * sa, a_mm * s], [0.0, sa, ca, d_mm], [0.0, 0.0, 0.0, 1.0]]
+    )
 
 
 class _Film:

@@ -1,8 +1,9 @@
-"""An arm as a value: its Denavit-Hartenberg chain, its limits, and how it keeps a pen to the paper.
+"""An arm as a value: its chain, its limits, and how it keeps a pen to the paper.
 
-Standard DH: row (theta, d, a, alpha) is `Rz(theta) Tz(d) Tx(a) Rx(alpha)`; a revolute joint adds its
-position to theta, a prismatic one to d. The paper is the plane z = 0 of its own frame, which is the base
-frame unless the file says where it lies, and the tip of the pen is the origin of the last frame.
+Each joint is a fixed transform, its origin, which most do without, and then a standard Denavit-Hartenberg row:
+(theta, d, a, alpha) is `Rz(theta) Tz(d) Tx(a) Rx(alpha)`; a revolute joint adds its position to theta, a prismatic one
+to d. After the last row comes the tool, a fixed transform too: the last frame is there, and the tip of the pen is its
+origin. The paper is the plane z = 0 of its own frame, which is the base frame unless the file says where it lies.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 
 from planner.arms.accuracy import Accuracy
 from planner.arms.paper_pose import BASE_PLANE, PaperPose
+from planner.arms.rigid_transform import IDENTITY, RigidTransform
 from planner.arrays import FloatArray
 from planner.errors import UsageError
 from planner.settings import DEFAULT_WEIGHTS, ConfigurationWeights
@@ -86,7 +88,9 @@ class BusServo:
 class Joint:
     """One DH row and its limits: rad, rad/s, ... for a revolute joint, mm, mm/s, ... for a prismatic one.
 
-    thickness_mm: diameter of the row's link, a capsule along its d and its a; None where it is not known.
+    thickness_mm: diameter of the row's link, a capsule along its d, its a and the way to the origin of the next joint;
+    None where it is not known. origin: from the end of the row before to the frame about or along whose z it moves.
+    urdf_name: what a robot description calls it, where that can be no column of a file.
     """
 
     name: str
@@ -103,6 +107,14 @@ class Joint:
     servo: Servo | None = None
     bus: BusServo | None = None
     thickness_mm: float | None = None
+    origin: RigidTransform = IDENTITY
+    urdf_name: str | None = None
+
+    @property
+    def length_mm(self) -> float:
+        """The greatest length that it adds to the chain."""
+        slides = max(abs(self.minimum), abs(self.maximum)) if self.kind is JointKind.PRISMATIC else 0.0
+        return self.origin.length_mm + abs(self.d_mm) + abs(self.a_mm) + slides
 
     @property
     def file_unit(self) -> str:
@@ -117,10 +129,10 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Coupling:
-    """Joint `joint` follows others: q[joint] = constant_rad + sum of coefficient * q[other]."""
+    """Joint `joint` follows others: q[joint] = constant + sum of coefficient * q[other], each in rad or mm."""
 
     joint: int
-    constant_rad: float
+    constant: float
     coefficients: tuple[tuple[int, float], ...]
 
 
@@ -158,7 +170,7 @@ class Arm:
 
     park: (n_joints,) where the arm rests when it is not used, if the builder says. paper: where the paper lies.
     accuracy: what a calibration left unknown, where there was one. weights: what spare joints are spent on, where
-    nothing else is asked for.
+    nothing else is asked for. tool: from the end of the last row to the pen's frame, whose origin is the tip.
     """
 
     name: str
@@ -172,6 +184,7 @@ class Arm:
     paper: PaperPose = BASE_PLANE
     accuracy: Accuracy | None = None
     weights: ConfigurationWeights = DEFAULT_WEIGHTS
+    tool: RigidTransform = IDENTITY
 
     @property
     def n_joints(self) -> int:
@@ -222,7 +235,7 @@ class Arm:
         for joint, k in column.items():
             matrix[joint, k] = 1.0
         for coupling in self.couplings:
-            constant[coupling.joint] = coupling.constant_rad
+            constant[coupling.joint] = coupling.constant
             for other, coefficient in coupling.coefficients:
                 matrix[coupling.joint, column[other]] = coefficient
         matrix.setflags(write=False)

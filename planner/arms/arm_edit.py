@@ -19,9 +19,13 @@ _ZERO, _SLOPES = "pulse_at_zero_us", ("us_per_deg", "us_per_mm")
 
 def edited(text: str, before: Arm, after: Arm, remark: str) -> str:
     """`text`, the file that was read as `before`, with everything in which `after` differs from that. Both have the
-    same joints. `remark` stands at its top, once."""
+    same joints. `remark` stands at its top, once. A file of modified rows whose links change becomes one of standard
+    rows, without its comments: an arm has each of its lengths in another row than such a file."""
     document = tomlkit.parse(text)
-    for place, value in _changes(tomllib.loads(arm_toml(before)), tomllib.loads(arm_toml(after))):
+    changes = list(_changes(tomllib.loads(arm_toml(before)), tomllib.loads(arm_toml(after))))
+    if document.get("dh") == "modified" and any(place[-1] in ("a_mm", "alpha_deg") for place, _ in changes):
+        return arm_toml(after, [remark])
+    for place, value in changes:
         _change(document, place, value)
     changed, comment = tomlkit.dumps(document), f"# {remark}\n"
     return changed if comment in changed else comment + ("" if changed.startswith("#") else "\n") + changed

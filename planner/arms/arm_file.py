@@ -14,9 +14,12 @@ import numpy as np
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
 from planner.arms.accuracy import Accuracy
-from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Workspace
+from planner.arms.arm import Arm, Joint, JointKind, Pen, PenHold, Workspace
+from planner.arms.coupling_section import CouplingSection, coupling_faults
 from planner.arms.file_section import LONGEST_MM, Length, Limit, NotNegative, Number, Section, Size, told
+from planner.arms.frame_section import OriginSection, ToolSection
 from planner.arms.paper_pose import PaperPose
+from planner.arms.rigid_transform import IDENTITY, RigidTransform
 from planner.arms.servo_section import (
     SlidingBusSection,
     SlidingServoSection,
@@ -54,7 +57,9 @@ class _JointBase(Section):
     d_mm: Length = 0.0
     a_mm: Length = 0.0
     alpha_deg: Number = 0.0
+    origin: OriginSection | None = None
     thickness_mm: Size | None = None
+    urdf_name: Annotated[str, Field(max_length=200)] | None = None
 
     @property
     @abstractmethod
@@ -83,12 +88,6 @@ class _RevoluteSection(_JointBase):
     def limits(self) -> tuple[float, float]:
         return self.min_deg, self.max_deg
 
-    @model_validator(mode="after")
-    def _what_is_thick_has_length(self) -> Self:
-        if self.thickness_mm is not None and self.d_mm == 0 and self.a_mm == 0:
-            raise ValueError(f"thickness_mm {self.thickness_mm:g} is that of no link: d_mm and a_mm are 0")
-        return self
-
 
 class _PrismaticSection(_JointBase):
     kind: Literal["prismatic"]
@@ -103,12 +102,6 @@ class _PrismaticSection(_JointBase):
     @property
     def limits(self) -> tuple[float, float]:
         return self.min_mm, self.max_mm
-
-
-class _CouplingSection(Section):
-    joint: str
-    constant_deg: Number
-    coefficients: dict[str, Number]
 
 
 class _PenSection(Section):
@@ -181,15 +174,17 @@ class _ArmSection(Section):
     name: Name
     source: str
     closed_form: Literal["drawing_arm", "scara", "three_joint", "six_joint", "stanford"] | None = None
+    dh: Literal["standard", "modified"] = "standard"
     pen: _PenSection
     workspace: _WorkspaceSection
     joints: Annotated[
         list[Annotated[_RevoluteSection | _PrismaticSection, Field(discriminator="kind")]],
         Field(min_length=1, max_length=_MOST_JOINTS),
     ]
-    coupling: list[_CouplingSection] = Field(default=[])
+    coupling: list[CouplingSection] = Field(default=[])
     park: dict[str, Number] | None = None
     paper: _PaperSection = _PaperSection()
+    tool: ToolSection = ToolSection()
     accuracy: _AccuracySection | None = None
     configurations: _ConfigurationsSection = _ConfigurationsSection()
 
@@ -217,8 +212,8 @@ def load_arm(name_or_file: str) -> Arm:
         raise ArmFileError(
             name_or_file,
             [
-                "robot descriptions (URDF, xacro) are not read yet; write the joints as rows"
-                " of a Denavit-Hartenberg table into a .toml file"
+                f"is a robot description, which an arm file is made of first: plan arm --urdf {name_or_file}"
+                " -o my_arm.toml, then --arm my_arm.toml"
             ],
         )
     if name_or_file not in known_arms():
@@ -238,27 +233,36 @@ def arm_file_text(name_or_file: str) -> str:
 def read_arm_file(path: Path) -> Arm:
     """Read, check and convert one arm file. Errors: ArmFileError with all faults."""
     try:
-        content = tomllib.loads(_text(path))
+        text = _text(path)
     except OSError as error:
         raise ArmFileError(str(path), [f"cannot be read: {error.strerror}"]) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
         raise ArmFileError(str(path), [f"is not TOML: {error}"]) from error
+    return arm_of_text(text, str(path))
+
+
+def arm_of_text(text: str, source: str) -> Arm:
+    """The arm of a file's text; `source` is what messages call it. Errors: as `read_arm_file`."""
+    try:
+        content = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ArmFileError(source, [f"is not TOML: {error}"]) from error
     except RecursionError as error:
-        raise ArmFileError(str(path), ["is not an arm: its values are nested too deeply"]) from error
+        raise ArmFileError(source, ["is not an arm: its values are nested too deeply"]) from error
     try:
         section = _ArmSection.model_validate(content)
     except ValidationError as error:
-        raise ArmFileError(str(path), _faults(error, content)) from error
+        raise ArmFileError(source, _faults(error, content)) from error
     faults = _contradictions(section)
     if faults:
-        raise ArmFileError(str(path), faults)
+        raise ArmFileError(source, faults)
     arm = _arm(section)
     if section.park is None:
         return arm
     parked = _parked(arm, section.park)
     faults = _beyond_limits(arm, parked)
     if faults:
-        raise ArmFileError(str(path), faults)
+        raise ArmFileError(source, faults)
     return replace(arm, park=tuple(parked.tolist()))
 
 
@@ -292,32 +296,12 @@ def _contradictions(section: _ArmSection) -> list[str]:
     for index, joint in enumerate(section.joints):
         if names.index(joint.name) != index:
             faults.append(f"joints[{index}].name: '{joint.name}' is used twice")
-    together_mm = sum(
-        abs(joint.d_mm)
-        + abs(joint.a_mm)
-        + (max(map(abs, joint.limits)) if isinstance(joint, _PrismaticSection) else 0.0)
-        for joint in section.joints
-    )
-    if together_mm > LONGEST_MM:
-        faults.append(
-            f"joints: their lengths (d_mm, a_mm and what slides) are {together_mm:g} mm together, more than"
-            f" {LONGEST_MM:g} mm"
-        )
+        if section.dh == "modified" and joint.origin is not None:
+            faults.append(f"joints[{index}].origin: not beside dh = 'modified', where a_mm and alpha_deg say it")
+    if not faults:
+        faults += _without_length(section)
     mimic = [coupling.joint for coupling in section.coupling]
-    for index, coupling in enumerate(section.coupling):
-        key = f"coupling[{index}]"
-        for name in (coupling.joint, *coupling.coefficients):
-            if name not in names:
-                faults.append(f"{key}: there is no joint '{name}' (joints: {', '.join(names)})")
-            elif section.joints[names.index(name)].kind != "revolute":
-                faults.append(f"{key}: joint '{name}' is prismatic; couplings hold between revolute joints")
-        if mimic.index(coupling.joint) != index:
-            faults.append(f"{key}.joint: '{coupling.joint}' is driven by two couplings")
-        faults += [
-            f"{key}.coefficients: '{name}' is itself driven by a coupling"
-            for name in coupling.coefficients
-            if name in mimic
-        ]
+    faults += coupling_faults(section.coupling, {joint.name: JointKind(joint.kind) for joint in section.joints})
     if section.pen.hold == "coupling" and not section.coupling:
         faults.append("pen.hold: 'coupling' needs at least one [[coupling]]")
     faults += _shared_lines(section)
@@ -330,6 +314,27 @@ def _contradictions(section: _ArmSection) -> list[str]:
         ]
     if section.park is not None:
         faults += _misparked(section.park, [name for name in names if name not in mimic], names)
+    return faults
+
+
+def _without_length(section: _ArmSection) -> list[str]:
+    """Thick links that have no length, and lengths that are no arm's."""
+    joints, tool = _joints(section), _tool(section)
+    faults = []
+    for index, joint in enumerate(joints):
+        onwards = joints[index + 1].origin if index + 1 < len(joints) else tool
+        turns = joint.kind is JointKind.REVOLUTE
+        if joint.thickness_mm is not None and turns and not (joint.d_mm or joint.a_mm or onwards.length_mm):
+            faults.append(
+                f"joints[{index}]: thickness_mm {joint.thickness_mm:g} is that of no link: d_mm and a_mm are 0,"
+                f" joint {joint.name}"
+            )
+    together_mm = tool.length_mm + sum(joint.length_mm for joint in joints)
+    if together_mm > LONGEST_MM:
+        faults.append(
+            f"joints: their lengths (d_mm, a_mm, origins, the tool and what slides) are {together_mm:g} mm together,"
+            f" more than {LONGEST_MM:g} mm"
+        )
     return faults
 
 
@@ -394,33 +399,56 @@ def _joint(place: int, section: _RevoluteSection | _PrismaticSection) -> Joint:
         None if section.servo is None else section.servo.servo(place, unit),
         None if section.bus is None else section.bus.servo(unit),
         section.thickness_mm,
+        IDENTITY if section.origin is None else section.origin.transform(),
+        section.urdf_name,
     )
+
+
+def _joints(section: _ArmSection) -> tuple[Joint, ...]:
+    joints = tuple(_joint(place, joint) for place, joint in enumerate(section.joints))
+    return joints if section.dh == "standard" else _standard(joints)
+
+
+def _standard(joints: tuple[Joint, ...]) -> tuple[Joint, ...]:
+    """Modified rows, `Rx(alpha) Tx(a) Rz(theta) Tz(d)`, as standard ones: the a and alpha of a row are those at the end
+    of the row before, and those of the first row its origin."""
+    first = RigidTransform(x_mm=joints[0].a_mm, roll_rad=joints[0].alpha_rad)
+    following = [(joint.a_mm, joint.alpha_rad) for joint in joints[1:]] + [(0.0, 0.0)]
+    return tuple(
+        replace(joint, a_mm=a_mm, alpha_rad=alpha_rad, origin=IDENTITY if index else first)
+        for index, (joint, (a_mm, alpha_rad)) in enumerate(zip(joints, following, strict=True))
+    )
+
+
+def _tool(section: _ArmSection) -> RigidTransform:
+    return section.tool.with_pen(_tool_axis(section))
+
+
+def _tool_axis(section: _ArmSection) -> tuple[float, float, float]:
+    """A unit vector; zeros, where the file has them for a pen that is not pointed."""
+    x, y, z = section.pen.tool_axis
+    length = math.hypot(x, y, z) or 1.0
+    return x / length, y / length, z / length
 
 
 def _arm(section: _ArmSection) -> Arm:
-    names = [joint.name for joint in section.joints]
-    joints = tuple(_joint(place, joint) for place, joint in enumerate(section.joints))
-    couplings = tuple(
-        Coupling(
-            names.index(coupling.joint),
-            math.radians(coupling.constant_deg),
-            tuple((names.index(name), value) for name, value in coupling.coefficients.items()),
-        )
-        for coupling in section.coupling
-    )
-    length = math.hypot(*section.pen.tool_axis)
-    x, y, z = (component / length if length else component for component in section.pen.tool_axis)
+    joints = _joints(section)
     return Arm(
         name=section.name,
         source=section.source,
         joints=joints,
-        couplings=couplings,
+        couplings=tuple(coupling.coupling(joints) for coupling in section.coupling),
         pen=Pen(
-            PenHold(section.pen.hold), (x, y, z), section.pen.lift_mm, section.pen.clearance_mm, section.pen.speed_mm_s
+            PenHold(section.pen.hold),
+            _tool_axis(section),
+            section.pen.lift_mm,
+            section.pen.clearance_mm,
+            section.pen.speed_mm_s,
         ),
         workspace=Workspace(section.workspace.inner_radius_mm, section.workspace.min_tip_speed_mm_s),
         closed_form=section.closed_form,
         paper=section.paper.pose(),
+        tool=_tool(section),
         weights=section.configurations.weights(),
         accuracy=None if section.accuracy is None else _accuracy(section.accuracy, joints),
     )

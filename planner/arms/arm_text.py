@@ -8,7 +8,10 @@ from dataclasses import asdict
 import numpy as np
 
 from planner.arms.arm import Arm, BusServo, Joint, Servo
+from planner.arms.coupling_section import coupling_values
+from planner.arms.frame_section import frame_values
 from planner.arms.paper_pose import PaperPose
+from planner.arms.rigid_transform import RigidTransform
 from planner.settings import DEFAULT_WEIGHTS
 
 _LIMITS = {"min": "minimum", "max": "maximum"}
@@ -21,7 +24,7 @@ _RATES = {
 
 def arm_toml(arm: Arm, remarks: Iterable[str] = ()) -> str:
     """The text of an arm file, `remarks` as comments at its top."""
-    blocks = ["\n".join(f"# {line}" for line in remarks)] if remarks else []
+    blocks = ["\n".join(f"# {line}".rstrip() for line in remarks)] if remarks else []
     head = {"name": arm.name, "source": arm.source}
     if arm.closed_form:
         head["closed_form"] = arm.closed_form
@@ -42,6 +45,8 @@ def arm_toml(arm: Arm, remarks: Iterable[str] = ()) -> str:
     )
     if not arm.paper.is_base_plane:
         blocks.append("[paper]\n" + _lines(_paper(arm.paper)))
+    if not arm.tool.is_identity:
+        blocks.append("[tool]\n" + _exact_lines(frame_values(arm.tool)))
     if arm.accuracy is not None:
         slack = {
             f"{joint.name}": value / joint.per_file_unit
@@ -62,16 +67,7 @@ def arm_toml(arm: Arm, remarks: Iterable[str] = ()) -> str:
         blocks.append("[configurations]\n" + _lines(asdict(arm.weights)))
     blocks += [_joint(joint) for joint in arm.joints]
     for coupling in arm.couplings:
-        blocks.append(
-            "[[coupling]]\n"
-            + _lines(
-                {
-                    "joint": arm.joints[coupling.joint].name,
-                    "constant_deg": _degrees(coupling.constant_rad),
-                    "coefficients": {arm.joints[other].name: value for other, value in coupling.coefficients},
-                }
-            )
-        )
+        blocks.append("[[coupling]]\n" + _lines(coupling_values(coupling, arm.joints)))
     if arm.park is not None:
         blocks.append(
             "[park]\n"
@@ -98,9 +94,12 @@ def _paper(paper: PaperPose) -> dict[str, float]:
 
 def _joint(joint: Joint) -> str:
     unit, per = joint.file_unit, joint.per_file_unit
-    values: dict[str, object] = {
-        "name": joint.name,
-        "kind": joint.kind.value,
+    values: dict[str, object] = {"name": joint.name, "kind": joint.kind.value}
+    if joint.urdf_name is not None:
+        values["urdf_name"] = joint.urdf_name
+    if not joint.origin.is_identity:
+        values["origin"] = joint.origin
+    values |= {
         "theta_deg": _degrees(joint.theta_rad),
         "d_mm": joint.d_mm,
         "a_mm": joint.a_mm,
@@ -147,6 +146,15 @@ def _bus(bus: BusServo, unit: str, per: float) -> dict[str, object]:
     return values
 
 
+def _exact_lines(values: Mapping[str, float]) -> str:
+    return "\n".join(f"{key} = {_exact_text(value)}" for key, value in values.items())
+
+
+def _exact_text(value: float) -> str:
+    """With all digits but the two that converting to degrees may have cost: errors of origins add up along an arm."""
+    return repr(float(f"{value:.14g}"))
+
+
 def _lines(values: Mapping[str, object]) -> str:
     return "\n".join(f"{key} = {value_text(value)}" for key, value in values.items())
 
@@ -159,6 +167,9 @@ def value_text(value: object) -> str:
             return '"' + "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in escaped) + '"'
         case int():
             return str(value)
+        case RigidTransform():
+            entries = (f"{key} = {_exact_text(entry)}" for key, entry in frame_values(value).items())
+            return "{ " + ", ".join(entries) + " }"
         case float():
             return repr(float(f"{value:.10g}"))
         case list() if value and isinstance(value[0], list):

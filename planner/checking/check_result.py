@@ -45,7 +45,7 @@ class Finding:
     """One law and how the trajectory stands to it.
 
     check: the law's name. passed: always True for a note, which has no limit. worst, limit: the worst
-    figure and the limit that it is held to, in `unit`.
+    figure and the limit that it is held to, in `unit`. middle: of what is allowed, from where both count.
     """
 
     check: str
@@ -56,11 +56,14 @@ class Finding:
     place: Place | None = None
     remark: str = ""
     is_note: bool = False
+    middle: float = 0.0
 
     @property
     def share(self) -> float:
         """How much of its limit is used; 0 where there are no figures."""
-        return self.worst / self.limit if self.worst is not None and self.limit else 0.0
+        if self.worst is None or self.limit is None or self.limit == self.middle:
+            return 0.0
+        return (self.worst - self.middle) / (self.limit - self.middle)
 
     @property
     def words(self) -> str:

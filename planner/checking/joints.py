@@ -22,7 +22,8 @@ from planner.checking.between import POINTS_PER_STEP, Interpolation, cubic_error
 from planner.checking.check_result import Finding, Place
 from planner.trajectory import Trajectory
 
-COUPLING_TOLERANCE_DEG = 1e-4
+COUPLING_TOLERANCE = 1e-4
+"""In deg or mm of the joint that is driven."""
 EXACTNESS = 1e-5
 """Share of a limit by which it may be exceeded: what is planned up to a limit is so but for arithmetic."""
 _NEGLIGIBLE = 2e-3
@@ -111,6 +112,7 @@ def position_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
                 int(samples[joint]),
                 bool(excess[joint] <= allowance[joint]),
                 f"within {low[joint]:g} and {high[joint]:g}",
+                middle=float(low[joint] + high[joint]) / 2,
             )
             for joint in range(arm.n_joints)
         ]
@@ -209,15 +211,13 @@ def couplings(trajectory: Trajectory, arm: Arm) -> list[Finding]:
     findings = []
     positions = arm.from_file_units(trajectory.positions)
     for coupling in arm.couplings:
-        wanted = coupling.constant_rad + sum(
+        wanted = coupling.constant + sum(
             coefficient * positions[:, other] for other, coefficient in coupling.coefficients
         )
-        gap_deg = np.degrees(np.abs(positions[:, coupling.joint] - wanted))
-        sample = int(np.argmax(gap_deg))
+        gap = np.abs(positions[:, coupling.joint] - wanted) / arm.joints[coupling.joint].per_file_unit
+        sample = int(np.argmax(gap))
         findings.append(
-            _joint_finding(
-                trajectory, arm, "coupling", coupling.joint, float(gap_deg[sample]), COUPLING_TOLERANCE_DEG, sample
-            )
+            _joint_finding(trajectory, arm, "coupling", coupling.joint, float(gap[sample]), COUPLING_TOLERANCE, sample)
         )
     return findings
 
@@ -233,6 +233,7 @@ def _joint_finding(
     passed: bool | None = None,
     remark: str = "",
     per: str = "",
+    middle: float = 0.0,
 ) -> Finding:
     """A finding on a joint; passed, unless said otherwise, where worst is at most the limit."""
     stroke = int(trajectory.stroke[sample])
@@ -251,4 +252,5 @@ def _joint_finding(
         arm.joints[joint].file_unit + per,
         place,
         remark,
+        middle=middle,
     )

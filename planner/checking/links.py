@@ -1,8 +1,9 @@
 """Links as capsules: how far they are from each other, and how low they come.
 
-A link with a thickness is a capsule about each segment of its row. Capsules of one row are held square to each other.
-Two capsules between which the chain is shorter than half of both thicknesses together touch at that joint whatever the
-arm does: they count where they are folded to less than a right angle, by the far end of the shorter one.
+A link with a thickness is a capsule about each segment of its row, and about the way on to the next. Capsules of one
+row are held to each other. Two capsules between which the chain is shorter than half of both thicknesses together touch
+at that joint whatever the arm does: they count where they are folded to less than a right angle, by the far end of the
+shorter one.
 """
 
 from __future__ import annotations
@@ -35,7 +36,8 @@ class Capsules:
     """The capsules of an arm whose chain has these segments: the row of each, as in `ChainPoses.rows`."""
 
     def __init__(self, arm: Arm, rows: tuple[int, ...]) -> None:
-        self._half_mm = [None if (thickness := arm.joints[row].thickness_mm) is None else thickness / 2 for row in rows]
+        thickness_mm = [None if row < 0 else arm.joints[row].thickness_mm for row in rows]
+        self._half_mm = [None if thickness is None else thickness / 2 for thickness in thickness_mm]
         lengths = _greatest_lengths(arm)
         thick = [capsule for capsule, half in enumerate(self._half_mm) if half is not None]
         self._pairs = []
@@ -85,12 +87,16 @@ def _greatest_lengths(arm: Arm) -> list[float]:
     """The greatest length of each segment that makes a node."""
     lengths = []
     for joint in arm.joints:
+        if joint.origin.length_mm:
+            lengths.append(joint.origin.length_mm)
         if joint.kind is JointKind.PRISMATIC:
             lengths.append(max(abs(joint.d_mm + joint.minimum), abs(joint.d_mm + joint.maximum)))
         elif joint.d_mm:
             lengths.append(abs(joint.d_mm))
         if joint.a_mm:
             lengths.append(abs(joint.a_mm))
+    if arm.tool.length_mm:
+        lengths.append(arm.tool.length_mm)
     return lengths
 
 

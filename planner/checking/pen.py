@@ -104,12 +104,7 @@ def pen_as_the_tip(trajectory: Trajectory, arm: Arm, sweep: Sweep) -> list[Findi
 
 def _tip_noise_mm(trajectory: Trajectory, arm: Arm) -> float:
     """How much of a step of the tip may be none: positions are rounded, and planned to a tenth of a micrometre."""
-    reach_mm = sum(
-        abs(one.a_mm)
-        + abs(one.d_mm)
-        + (max(abs(one.minimum), abs(one.maximum)) if one.kind is JointKind.PRISMATIC else 0.0)
-        for one in arm.joints
-    )
+    reach_mm = arm.tool.length_mm + sum(one.length_mm for one in arm.joints)
     rounding = arm.from_file_units(trajectory.rounding.max(axis=0, keepdims=True))[0]
     moves = [
         amount * (1.0 if one.kind is JointKind.PRISMATIC else reach_mm)

@@ -125,6 +125,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.serve import serve
 
             return serve(rest)
+        case "export":
+            from planner.cli.export import export
+
+            return export(rest)
         case "fonts":
             from planner.cli.fonts import fonts
 
@@ -133,6 +137,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.inkscape import inkscape
 
             return inkscape(rest)
+        case "step":
+            from planner.cli.step import step
+
+            return step(rest)
         case "jog":
             from planner.cli.jog import jog
 

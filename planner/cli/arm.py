@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, cast
 
+from planner.cli.arm_import import add_import_options, import_arm, refuse_import_options
 from planner.cli.files import output_file
 from planner.cli.joints import all_joints
 from planner.cli.output import check_folder_target
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
 _DESCRIPTION = """\
 List the arms that come with the planner, or describe one: its Denavit-Hartenberg table, limits, couplings and pen.
 With --at, describe a configuration of it: the pen's pose, the Jacobian, which motion is internal, which velocity
-impossible, and how far the tip strays where a joint is off."""
+impossible, and how far the tip strays where a joint is off.
+With --urdf, make an arm file of a robot description."""
 
 _EPILOG = """\
 examples:
@@ -30,7 +32,8 @@ examples:
   plan arm drawing_arm
   plan arm my_arm.toml --json
   plan arm my_arm.toml --report my_arm
-  plan arm scara --at 0 90 -120 -90 --frame 2"""
+  plan arm scara --at 0 90 -120 -90 --frame 2
+  plan arm --urdf robot.urdf --base base_link --tip tool0 --pen-length 120 -o robot.toml"""
 
 _PAGE = "index.html"
 
@@ -55,7 +58,15 @@ def arm(arguments: list[str]) -> int:
         "base, tool or the number of one between (default: base)",
     )
     parser.add_argument("--report", type=output_file, metavar="DIR", help="write DIR/index.html, a page about the arm")
+    add_import_options(parser)
     options = parser.parse_args(arguments)
+    if options.urdf is not None:
+        describing = {"--json": options.json, "--at": options.at, "--frame": options.frame, "--report": options.report}
+        for option, given in describing.items():
+            if given:
+                raise UsageError(f"{option} describes an arm, and does not go with --urdf")
+        return import_arm(options)
+    refuse_import_options(options)
 
     from planner.arms.arm_file import known_arms, load_arm
     from planner.arms.description import arm_description
@@ -157,6 +168,17 @@ def _table(arm: dict[str, Any], refusal: str) -> list[str]:
         rows.append((joint["name"], joint["kind"], *map(_number, numbers), joint["unit"]))
     lines = _columns(rows)
     lines.append("(theta and alpha in deg, d and a in mm; limits in the joint's unit, per s, s2 and s3)")
+    lines += [
+        f"{what}: {_placed(values)}"
+        for what, values in (
+            *(
+                (f"origin of {joint['name']}", dh.get("origin"))
+                for joint, dh in zip(arm["joints"], arm["dh"], strict=True)
+            ),
+            ("tool", arm.get("tool")),
+        )
+        if values
+    ]
     thick = [
         f"{joint['name']} {_number(joint['thickness_mm'])} mm" for joint in arm["joints"] if "thickness_mm" in joint
     ]
@@ -167,7 +189,8 @@ def _table(arm: dict[str, Any], refusal: str) -> list[str]:
             f" {'+' if value >= 0 else '-'} {'' if abs(value) == 1 else f'{abs(value):g} '}{name}"
             for name, value in coupling["coefficients"].items()
         )
-        lines.append(f"coupling: {coupling['joint']} = {_number(coupling['constant_deg'])} deg{terms}")
+        unit = "mm" if "constant_mm" in coupling else "deg"
+        lines.append(f"coupling: {coupling['joint']} = {_number(coupling[f'constant_{unit}'])} {unit}{terms}")
     pen = arm["pen"]
     lines.append(
         f"pen: travels {_number(pen['lift_mm'])} mm above the paper, moves only straight up or down "
@@ -181,6 +204,12 @@ def _table(arm: dict[str, Any], refusal: str) -> list[str]:
     lines.append(f"reach: {_number(reach['min'])} to {_number(reach['max'])} mm from the base")
     lines.append(f"canvas: {_number(canvas['width_mm'])} x {_number(canvas['height_mm'])} mm, corners {corners} mm")
     return lines
+
+
+def _placed(values: dict[str, float]) -> str:
+    """An origin or the tool, such as `x 30 mm, yaw 90 deg`."""
+    told = ((*key.split("_"), _number(value)) for key, value in values.items())
+    return ", ".join(f"{axis} {number} {unit}" for axis, unit, number in told if number != "0")
 
 
 def _number(value: float) -> str:

@@ -92,8 +92,8 @@ def convergence_lines(arm: Arm, found: Convergence) -> Iterator[str]:
     """The documented iterations: joints before each, the tip, and its error along and across the paper."""
     decimals = 4 if arm.n_joints <= 5 else 3
     names = [f"{joint.name} {joint.file_unit}" for joint in arm.joints]
-    width = decimals + 6
-    head = "".join(f"{name:>{width}}" for name in names)
+    widths = [max(decimals + 6, len(name) + 2) for name in names]
+    head = "".join(f"{name:>{width}}" for name, width in zip(names, widths, strict=True))
     yield f"DLS documented towards ({', '.join(f'{value:g}' for value in found.target_mm)}) mm, iteration by iteration"
     yield f" i{head}" + "".join(f"{name:>9}" for name in ("x mm", "y mm", "z mm", "along mm", "across"))
     elided = len(found.steps) > _HEAD + _TAIL
@@ -102,17 +102,17 @@ def convergence_lines(arm: Arm, found: Convergence) -> Iterator[str]:
             if index == _HEAD:
                 yield f" ... {len(found.steps) - _HEAD - _TAIL} more"
             continue
-        yield _iteration(arm, index, state, decimals)
+        yield _iteration(arm, index, state, decimals, widths)
     if not found.converged:
         yield f"not within {_tolerances()} after {DOCUMENTED.most_iterations} iterations"
     yield from _misprints(arm, found)
 
 
-def _iteration(arm: Arm, index: int, state: DlsStep, decimals: int) -> str:
+def _iteration(arm: Arm, index: int, state: DlsStep, decimals: int, widths: Sequence[int]) -> str:
     along, across = float(np.hypot(*state.error_mm[:2])), abs(float(state.error_mm[2]))
     joints = "".join(
-        f"{round(value, decimals) + 0.0:>{decimals + 6}.{decimals}f}"
-        for value in arm.to_file_units(state.joints).tolist()
+        f"{round(value, decimals) + 0.0:>{width}.{decimals}f}"
+        for value, width in zip(arm.to_file_units(state.joints).tolist(), widths, strict=True)
     )
     lengths = "".join(f"{round(value, 3) + 0.0:>9.3f}" for value in (*state.tip_mm.tolist(), along, across))
     return f"{index:>2}{joints}{lengths}"

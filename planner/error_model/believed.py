@@ -30,7 +30,16 @@ def believed(arm: Arm) -> ErrorModel:
     return ErrorModel(
         tuple(_curve(arm, joint) for joint in arm.joints),
         half_slack(arm),
-        Geometry(theta, d_mm, a_mm, alpha, turns, _base_of(arm.paper)),
+        Geometry(
+            theta,
+            d_mm,
+            a_mm,
+            alpha,
+            turns,
+            _base_of(arm.paper),
+            np.array([joint.origin.matrix for joint in arm.joints]),
+            arm.tool.matrix,
+        ),
     )
 
 

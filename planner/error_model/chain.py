@@ -1,7 +1,8 @@
 """Where the tip is on the paper, and how that changes with everything that may be wrong: joints, lengths, the paper.
 
 Plain NumPy over many configurations at once. The chain is standard Denavit-Hartenberg, `Rz(theta) Tz(d) Tx(a)
-Rx(alpha)` a row; the paper's pose in the base frame comes before it.
+Rx(alpha)` a row, with a fixed transform before each and one after the last; the paper's pose in the base frame comes
+before it.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ class Geometry:
 
     theta, d_mm, a_mm, alpha: (n_joints,), rad and mm. revolute: (n_joints,). base: (6,) where the base frame stands in
     the paper's: x, y, z in mm, then yaw, and the turns about x and y after it, in rad:
-    `R = Rz(yaw) Rx(tilt_x) Ry(tilt_y)`.
+    `R = Rz(yaw) Rx(tilt_x) Ry(tilt_y)`. origins: (n_joints, 4, 4) and tool: (4, 4), mm, are what they are.
     """
 
     theta: FloatArray
@@ -28,6 +29,8 @@ class Geometry:
     alpha: FloatArray
     revolute: BoolArray
     base: FloatArray
+    origins: FloatArray
+    tool: FloatArray
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -68,6 +71,8 @@ def tips(geometry: Geometry, joints: FloatArray) -> TipChange:
     turn, origin = np.broadcast_to(start, (m, 3, 3)), np.broadcast_to(place, (m, 3))
     axes_z, axes_x, before, after = [], [], [], []
     for k in range(n):
+        origin = origin + turn @ geometry.origins[k, :3, 3]
+        turn = turn @ geometry.origins[k, :3, :3]
         revolute = bool(geometry.revolute[k])
         theta = geometry.theta[k] + (joints[:, k] if revolute else np.zeros(m))
         d_mm = geometry.d_mm[k] + (np.zeros(m) if revolute else joints[:, k])
@@ -82,6 +87,7 @@ def tips(geometry: Geometry, joints: FloatArray) -> TipChange:
         origin = origin + d_mm[:, None] * axis_z + geometry.a_mm[k] * axis_x
         after.append(origin)
         turn = np.stack((axis_x, ca * axis_y + sa * axis_z, ca * axis_z - sa * axis_y), axis=2)
+    origin = origin + turn @ geometry.tool[:3, 3]
     z, x = np.stack(axes_z, axis=2), np.stack(axes_x, axis=2)
     turned = np.cross(z, origin[:, :, None] - np.stack(before, axis=2), axis=1)
     twisted = np.cross(x, origin[:, :, None] - np.stack(after, axis=2), axis=1)

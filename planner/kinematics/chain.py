@@ -1,4 +1,4 @@
-"""Symbolic kinematics of any arm, built by CasADi from its DH table and couplings.
+"""Symbolic kinematics of any arm, built by CasADi from its chain and couplings.
 
 Everything is a function of the independent joints: mimic joints are substituted, so a configuration cannot leave
 its coupling. Compiled functions are evaluated over whole arrays of configurations at once.
@@ -12,6 +12,7 @@ import casadi
 import numpy as np
 
 from planner.arms.arm import Arm, JointKind, PenHold
+from planner.arms.rigid_transform import RigidTransform
 from planner.arrays import FloatArray
 from planner.kinematics.compiled import CompiledFunction
 from planner.kinematics.dh_row import dh_entries
@@ -20,6 +21,8 @@ from planner.kinematics.link_clearance import LinkClearance
 _PROBES = 32
 _NEARLY_SQUARE_RAD = float(np.radians(5.0))
 """Up to so far from square to the first joint's axis the paper counts as level to it."""
+_ZERO = 1e-4
+"""A horizontal component of a unit vector that is none: robot descriptions have right angles to four or five digits."""
 
 
 class Kinematics:
@@ -35,8 +38,8 @@ class Kinematics:
         matrix, constant = arm.coupling_matrix
         self.independent = casadi.SX.sym("q", len(arm.independent_joints))
         self.joints = casadi.sparsify(casadi.SX(matrix)) @ self.independent + constant
-        self.frames, corners = _chain(arm, self.joints)
-        last = self.frames[-1]
+        frames, last, corners = _chain(arm, self.joints)
+        self.frames, self.last = frames, last
         self.tip = last[:3, 3]
         self.axis = last[:3, :3] @ casadi.DM(arm.pen.tool_axis)
         self.task = casadi.vertcat(self.tip, *self._pointing()) if arm.pen.hold is PenHold.TOOL_AXIS else self.tip
@@ -55,16 +58,23 @@ class Kinematics:
             other != 0 for coupling in arm.couplings for other, _ in coupling.coefficients
         )
         square = arm.paper.T_base_paper[2, 2] >= np.cos(_NEARLY_SQUARE_RAD)
-        return arm.joints[0].kind is JointKind.REVOLUTE and alone and bool(square)
+        first = arm.joints[0]
+        return first.kind is JointKind.REVOLUTE and first.origin.is_identity and alone and bool(square)
 
     def _pointing(self) -> list[casadi.SX]:
-        """The horizontal components of the tool axis that are not zero by construction: seen from the turning base, or
-        from a joint that stays level and square to the tool axis, if one does."""
+        """The horizontal components of the tool axis that are not zero by construction: along and across the plane of
+        the first link, if the axis stays in one, or that of a joint that stays level and square to the tool axis."""
         if self.turns_over_paper:
             c, s = casadi.cos(self.joints[0]), casadi.sin(self.joints[0])
             axis = casadi.DM(self.arm.paper.T_base_paper[:3, :3]) @ self.axis
-            return self._not_always_zero(casadi.vertcat(c * axis[0] + s * axis[1], c * axis[1] - s * axis[0]))
-        for frame in self.frames[:-1]:
+            components = casadi.vertcat(c * axis[0] + s * axis[1], c * axis[1] - s * axis[0])
+            values = self._probed(components)
+            if (np.abs(values).max(axis=1) > _ZERO).all():  # the plane may stand askew to the first link's frame
+                turns, sizes, _ = np.linalg.svd(values, full_matrices=False)
+                if sizes[1] <= _ZERO * _PROBES:
+                    return [casadi.DM(turns[:, 0]).T @ components]
+            return self._not_always_zero(components)
+        for frame in self.frames:
             side = frame[:3, 2]
             if not self._not_always_zero(casadi.vertcat(side[2], casadi.dot(side, self.axis))):
                 return self._not_always_zero(side[1] * self.axis[0] - side[0] * self.axis[1])
@@ -72,10 +82,15 @@ class Kinematics:
 
     def _not_always_zero(self, values: casadi.SX) -> list[casadi.SX]:
         """Those of the values that some configuration makes other than zero."""
+        largest = np.abs(self._probed(values)).max(axis=1)
+        return [values[row] for row in range(values.shape[0]) if largest[row] > _ZERO]
+
+    def _probed(self, values: casadi.SX) -> FloatArray:
+        """(n_values, n_probes) the values in random configurations."""
         probe = casadi.Function("probe", [self.independent], [values])
         configurations = np.random.default_rng(0).uniform(-np.pi, np.pi, (self.n_independent, _PROBES))
-        largest = np.abs(np.array(probe.map(_PROBES)(configurations))).max(axis=1)
-        return [values[row] for row in range(values.shape[0]) if largest[row] > 1e-9]
+        probed: FloatArray = np.array(probe.map(_PROBES)(configurations))
+        return probed
 
     @property
     def n_independent(self) -> int:
@@ -92,7 +107,7 @@ class Kinematics:
 
     @cached_property
     def _pose(self) -> CompiledFunction:
-        return CompiledFunction("pose", [self.independent], [self.frames[-1]])
+        return CompiledFunction("pose", [self.independent], [self.last])
 
     @cached_property
     def _tip(self) -> CompiledFunction:
@@ -117,16 +132,15 @@ class Kinematics:
 
     def symbolic_jacobian(self, joints: casadi.SX) -> tuple[casadi.SX, casadi.SX, casadi.SX]:
         """Tip, tool axis and the geometric 6 x n Jacobian at symbolic joints, each taken as independent."""
-        frames, _ = _chain(self.arm, joints)
-        tip = frames[-1][:3, 3]
-        axes = [casadi.SX(self.arm.paper.T_paper_base[:3, 2]), *[frame[:3, 2] for frame in frames[:-1]]]
+        frames, last, _ = _chain(self.arm, joints)
+        tip = last[:3, 3]
         angular = casadi.horzcat(
             *[
-                axis if joint.kind is JointKind.REVOLUTE else casadi.SX.zeros(3)
-                for axis, joint in zip(axes, self.arm.joints, strict=True)
+                frame[:3, 2] if joint.kind is JointKind.REVOLUTE else casadi.SX.zeros(3)
+                for frame, joint in zip(frames, self.arm.joints, strict=True)
             ]
         )
-        pointing = frames[-1][:3, :3] @ casadi.DM(self.arm.pen.tool_axis)
+        pointing = last[:3, :3] @ casadi.DM(self.arm.pen.tool_axis)
         return tip, pointing, casadi.vertcat(casadi.jacobian(tip, joints), angular)
 
     def pose(self, independent: FloatArray) -> FloatArray:
@@ -166,19 +180,30 @@ class Kinematics:
         return self.arm.independent_of(joints)
 
 
-def _chain(arm: Arm, joints: casadi.SX) -> tuple[list[casadi.SX], list[casadi.SX]]:
-    """Frames 1..n as 4 x 4 matrices, and the corners of the link chain as points."""
+def _chain(arm: Arm, joints: casadi.SX) -> tuple[list[casadi.SX], casadi.SX, list[casadi.SX]]:
+    """The frame about or along whose z each joint moves and that of the pen, 4 x 4, and the corners of the link chain
+    as points: for each joint its origin, where that is some way off, and the ends of its d and its a; then the tip."""
     frame = casadi.SX.eye(4) if arm.paper.is_base_plane else casadi.SX(arm.paper.T_paper_base)
     frames, corners = [], []
     for index, joint in enumerate(arm.joints):
+        frame = _moved(frame, joint.origin)
+        if joint.origin.length_mm:
+            corners.append(frame[:3, 3])
+        frames.append(frame)
         revolute = joint.kind is JointKind.REVOLUTE
         theta = joint.theta_rad + (joints[index] if revolute else 0)
         d = joint.d_mm + (0 if revolute else joints[index])
         along = frame @ casadi.vertcat(0, 0, d, 1)
         frame = frame @ _dh(theta, d, joint.a_mm, joint.alpha_rad)
         corners += [along[:3], frame[:3, 3]]
-        frames.append(frame)
-    return frames, corners
+    frame = _moved(frame, arm.tool)
+    if arm.tool.length_mm:
+        corners.append(frame[:3, 3])
+    return frames, frame, corners
+
+
+def _moved(frame: casadi.SX, by: RigidTransform) -> casadi.SX:
+    return frame if by.is_identity else frame @ casadi.sparsify(casadi.SX(by.matrix))
 
 
 def _dh(theta: casadi.SX | float, d: casadi.SX | float, a_mm: float, alpha_rad: float) -> casadi.SX:

@@ -38,7 +38,7 @@ def configuration_description(arm: Arm, joints: FloatArray, in_frame: int = 0) -
             if not arm.minimum[index] - _SLACK <= value <= arm.maximum[index] + _SLACK
         ],
         "coupling_error_deg": _named(
-            [names[coupling.joint] for coupling in arm.couplings], np.degrees(_coupling_errors(arm, joints))
+            [names[coupling.joint] for coupling in arm.couplings], _coupling_errors(arm, joints)
         ),
         "tip_mm": rounded(frame[:3, 3]),
         "rotation": rounded(frame[:3, :3]),
@@ -64,7 +64,7 @@ def configuration_description(arm: Arm, joints: FloatArray, in_frame: int = 0) -
 def configuration_lines(arm: Arm, configuration: dict[str, Any]) -> list[str]:
     """What `configuration_description` found, as lines to read."""
     units = {joint.name: joint.file_unit for joint in arm.joints}
-    frame = _frame_name(arm, configuration["jacobian_frame"])
+    frame = frame_name(arm, configuration["jacobian_frame"])
     x, y, z = configuration["tip_mm"]
     lines = [
         "configuration: "
@@ -75,12 +75,14 @@ def configuration_lines(arm: Arm, configuration: dict[str, Any]) -> list[str]:
     if configuration["coupling_error_deg"]:
         off = {name: error for name, error in configuration["coupling_error_deg"].items() if abs(error) > 1e-4}
         lines.append(
-            "coupling: " + ("; ".join(f"{name} is off by {error:g} deg" for name, error in off.items()) or "kept")
+            "coupling: "
+            + ("; ".join(f"{name} is off by {error:g} {units[name]}" for name, error in off.items()) or "kept")
         )
     lines += ["", f"Jacobian of the pen in frame {frame} (mm and rad, per rad or mm of the joint)"]
-    lines += [f"  {'':2}  " + "  ".join(f"{name:>10}" for name in units)]
+    widths = [max(10, len(name)) for name in units]
+    lines += [f"  {'':2}  " + "  ".join(f"{name:>{width}}" for name, width in zip(units, widths, strict=True))]
     lines += [
-        f"  {name}  " + "  ".join(f"{value + 0.0:10.4f}" for value in row)
+        f"  {name}  " + "  ".join(f"{value + 0.0:{width}.4f}" for value, width in zip(row, widths, strict=True))
         for name, row in zip(ROW_NAMES, configuration["jacobian"], strict=True)
     ]
     lines += [
@@ -96,11 +98,11 @@ def configuration_lines(arm: Arm, configuration: dict[str, Any]) -> list[str]:
         lines.append("singular: " + ("; ".join(configuration["shapes"]) or "in a way that no single joint tells"))
     resting = "pen" if any(row.startswith("w") for row in configuration["rows"]) else "tip"
     lines += [
-        f"internal motion, the {resting} at rest: {_motion(motion, units)}"
+        f"internal motion, the {resting} at rest: {motion_text(motion, units)}"
         for motion in configuration["internal_motion"]
     ]
     lines += [
-        f"impossible, in frame {frame}: {_velocity(velocity)}" for velocity in configuration["impossible_velocity"]
+        f"impossible, in frame {frame}: {velocity_text(velocity)}" for velocity in configuration["impossible_velocity"]
     ]
     lines.append(
         "tip error: "
@@ -111,9 +113,9 @@ def configuration_lines(arm: Arm, configuration: dict[str, Any]) -> list[str]:
 
 
 def _coupling_errors(arm: Arm, joints: FloatArray) -> FloatArray:
-    """(n_couplings,) rad by which mimic joints differ from what the others make them."""
+    """(n_couplings,) deg or mm by which mimic joints differ from what the others make them."""
     wanted = arm.complete(joints[list(arm.independent_joints)])
-    error: FloatArray = (joints - wanted)[[coupling.joint for coupling in arm.couplings]]
+    error: FloatArray = arm.to_file_units(joints - wanted)[[coupling.joint for coupling in arm.couplings]]
     return error
 
 
@@ -137,15 +139,15 @@ def _in_file_units(arm: Arm, motions: FloatArray) -> FloatArray:
     return scaled
 
 
-def _frame_name(arm: Arm, frame: int) -> str:
+def frame_name(arm: Arm, frame: int) -> str:
     return {0: "0 (base)", arm.n_joints: f"{frame} (tool)"}.get(frame, str(frame))
 
 
-def _motion(motion: dict[str, float], units: dict[str, str]) -> str:
+def motion_text(motion: dict[str, float], units: dict[str, str]) -> str:
     return ", ".join(f"{name} {value:+.4g} {units[name]}" for name, value in motion.items() if abs(value) > 1e-6)
 
 
-def _velocity(weights: dict[str, float]) -> str:
+def velocity_text(weights: dict[str, float]) -> str:
     terms = {name: weight for name, weight in weights.items() if abs(weight) > 1e-6}
     if len(terms) == 1:
         return next(iter(terms))

@@ -1,6 +1,7 @@
 """How much clearance is left between the links of an arm, and between them and the paper.
 
-A link whose thickness is known is a capsule about each of the two segments of its row, along d and along a. The
+A link whose thickness is known is a capsule about each of the segments of its row, along d, along a and on to where the
+next joint has its origin. The
 clearance of two capsules is the distance of their segments less half of each thickness. Where a joint holds two
 together they always touch, so there the fold counts: under a right angle, the far end of the shorter one has to keep
 that far from the axis of the other. So it does where what lies between two is too short to ever hold them apart.
@@ -56,12 +57,13 @@ class LinkClearance:
 
     def __init__(self, arm: Arm, nodes_mm: Callable[[FloatArray], FloatArray]) -> None:
         self._arm, self._nodes_mm = arm, nodes_mm
-        lengths = [length for joint in arm.joints for length in _longest(joint)]
+        segments = _segments(arm)
+        lengths = [length for _, length in segments]
         with_length = [segment for segment, length in enumerate(lengths) if length > 0]
         capsules = [
-            _Capsule(segment // 2, segment, segment + 1, thickness / 2)
-            for segment in with_length
-            if (thickness := arm.joints[segment // 2].thickness_mm) is not None
+            _Capsule(link, segment, segment + 1, thickness / 2)
+            for segment, (link, length) in enumerate(segments)
+            if length > 0 and link >= 0 and (thickness := arm.joints[link].thickness_mm) is not None
         ]
         pairs = [(one, other) for one, other in combinations(capsules, 2) if one.link != other.link]
 
@@ -71,7 +73,8 @@ class LinkClearance:
         self._held = [pair for pair in pairs if held_together(*pair)]
         self._apart = [pair for pair in pairs if not held_together(*pair)]
         # The arm stands on the paper with its first corner, and the last row carries the pen.
-        pen_begins = min((segment for segment in with_length if segment // 2 == with_length[-1] // 2), default=0)
+        last = max((segments[segment][0] for segment in with_length), default=0)
+        pen_begins = min((segment for segment in with_length if segments[segment][0] == last), default=0)
         self._corners = [
             (capsule, corner)
             for capsule in capsules
@@ -125,6 +128,19 @@ class LinkClearance:
             found.append(Collision(pair, clearance, configuration) if clearance < kept_mm else None)
             start += len(sequence)
         return found
+
+
+def _segments(arm: Arm) -> list[tuple[int, float]]:
+    """The link that each segment between two corners belongs to, and the greatest length that it has. The way to a
+    joint's origin belongs to the link before, to none for the first joint, and the tool to the last."""
+    segments: list[tuple[int, float]] = []
+    for index, joint in enumerate(arm.joints):
+        if joint.origin.length_mm:
+            segments.append((index - 1, joint.origin.length_mm))
+        segments += [(index, length) for length in _longest(joint)]
+    if arm.tool.length_mm:
+        segments.append((arm.n_joints - 1, arm.tool.length_mm))
+    return segments
 
 
 def _longest(joint: Joint) -> tuple[float, float]:

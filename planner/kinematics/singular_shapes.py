@@ -12,7 +12,7 @@ import numpy as np
 
 from planner.arms.arm import Arm, JointKind
 from planner.arrays import FloatArray
-from planner.kinematics.frame_jacobian import chain_frames
+from planner.kinematics.frame_jacobian import chain_frames, joint_frames
 
 _TOLERANCE = 1e-6
 """Of the arm's length, and of a radian."""
@@ -20,8 +20,9 @@ _TOLERANCE = 1e-6
 
 def singular_shapes(arm: Arm, joints: FloatArray) -> list[str]:
     """Sentences that name the shapes a configuration (n_joints,), rad or mm, has; none where it has none of them."""
-    frames = chain_frames(arm, joints[None])[0]
-    axes, origins = frames[:, :3, 2], frames[:, :3, 3]
+    frames = chain_frames(arm, joints[None])
+    moving = joint_frames(arm, frames)[0]
+    axes, origins = moving[:, :3, 2], np.vstack((moving[:, :3, 3], frames[0, -1:, :3, 3]))  # the last one is the tip
     slack_mm = _TOLERANCE * float(np.linalg.norm(np.diff(origins, axis=0), axis=1).sum())
     turning = [index for index, joint in enumerate(arm.joints) if joint.kind is JointKind.REVOLUTE]
     names = [joint.name for joint in arm.joints]
@@ -76,9 +77,11 @@ def _from_axis(point: FloatArray, origin: FloatArray, axis: FloatArray) -> float
 
 def _wrist_centre(axes: FloatArray, origins: FloatArray, turning: list[int], slack_mm: float) -> FloatArray | None:
     """Where the last three axes meet, if they turn and do, and others come before them."""
-    n = len(axes) - 1
+    n = len(axes)
     if n < 5 or turning[-3:] != [n - 3, n - 2, n - 1]:
         return None
-    centre: FloatArray = origins[n - 1]
+    # The point that is nearest to all three of them: p with sum of (1 - z z^T)(p - o) = 0.
+    across = np.eye(3) - axes[-3:, :, None] * axes[-3:, None, :]
+    centre: FloatArray = np.linalg.lstsq(across.sum(axis=0), np.einsum("kij,kj->i", across, origins[n - 3 : n]))[0]
     meet = all(_from_axis(centre, origins[index], axes[index]) <= slack_mm for index in turning[-3:])
     return centre if meet else None

@@ -9,7 +9,7 @@ import numpy as np
 from planner.arms.arm import Arm, JointKind
 from planner.arrays import FloatArray, IntArray
 from planner.errors import UsageError
-from planner.kinematics.frame_jacobian import chain_frames
+from planner.kinematics.frame_jacobian import chain_frames, joint_frames
 from planner.plots.samples import window_s
 from planner.trajectory import Trajectory
 
@@ -127,17 +127,25 @@ def seen_from_the_side(nodes_mm: FloatArray) -> FloatArray:
 
 
 def arm_nodes(arm: Arm, joints: FloatArray) -> FloatArray:
-    """(n, n_nodes, 3) in the paper's frame: the base, and for each joint where its axis takes it and where its link
-    ends, of all those that ever differ from the one before."""
+    """(n, n_nodes, 3) in the paper's frame: the base, and for each joint its origin, where its axis takes it and
+    where its link ends, then the tip, of all those that ever differ from the one before."""
     frames = chain_frames(arm, joints)
+    moving = joint_frames(arm, frames)
     nodes = [frames[:, 0, :3, 3]]
     for index, joint in enumerate(arm.joints):
         slides = joint.kind is JointKind.PRISMATIC
+        travel = joint.d_mm + (joints[:, index, np.newaxis] if slides else 0.0)
+        bend = moving[:, index, :3, 3] + travel * moving[:, index, :3, 2]
+        if joint.origin.length_mm:
+            nodes.append(moving[:, index, :3, 3])
         if slides or joint.d_mm:
-            travel = joint.d_mm + (joints[:, index, np.newaxis] if slides else 0.0)
-            nodes.append(frames[:, index, :3, 3] + travel * frames[:, index, :3, 2])
+            nodes.append(bend)
         if joint.a_mm:
-            nodes.append(frames[:, index + 1, :3, 3])
+            turn = joint.theta_rad + (0.0 if slides else joints[:, index, np.newaxis])
+            along = np.cos(turn) * moving[:, index, :3, 0] + np.sin(turn) * moving[:, index, :3, 1]
+            nodes.append(bend + joint.a_mm * along)
+    if arm.tool.length_mm:
+        nodes.append(frames[:, -1, :3, 3])
     T_paper_base = arm.paper.T_paper_base
     seen: FloatArray = np.stack(nodes, axis=1) @ T_paper_base[:3, :3].T + T_paper_base[:3, 3]
     return seen

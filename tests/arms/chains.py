@@ -10,9 +10,11 @@ from pathlib import Path
 
 import numpy as np
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Workspace
 from planner.arms.arm_file import arms_folder, load_arm, read_arm_file
+from planner.arms.rigid_transform import IDENTITY, RigidTransform
 from planner.arrays import FloatArray
 from planner.inverse_kinematics.nlp import NlpSolver
 from planner.inverse_kinematics.references import References, references_of
@@ -57,8 +59,19 @@ def dh_frames(arm: Arm, joints: FloatArray) -> list[FloatArray]:
     frames = [np.eye(4)]
     for joint, value in zip(arm.joints, joints, strict=True):
         turn, slide = (value, 0.0) if joint.kind is JointKind.REVOLUTE else (0.0, value)
-        frames.append(frames[-1] @ dh_matrix(joint.theta_rad + turn, joint.d_mm + slide, joint.a_mm, joint.alpha_rad))
+        row = dh_matrix(joint.theta_rad + turn, joint.d_mm + slide, joint.a_mm, joint.alpha_rad)
+        frames.append(frames[-1] @ transform_matrix(joint.origin) @ row)
+    frames[-1] = frames[-1] @ transform_matrix(arm.tool)
     return frames
+
+
+def transform_matrix(transform: RigidTransform) -> FloatArray:
+    """Its turns about fixed axes, roll first, and then its shift."""
+    matrix = np.eye(4)
+    angles = (transform.roll_rad, transform.pitch_rad, transform.yaw_rad)
+    matrix[:3, :3] = Rotation.from_euler("xyz", angles).as_matrix()
+    matrix[:3, 3] = transform.x_mm, transform.y_mm, transform.z_mm
+    return matrix
 
 
 def tips_by_product(arm: Arm, joints: FloatArray) -> FloatArray:
@@ -95,9 +108,15 @@ _LENGTHS_MM = st.sampled_from([0.0, 20.0, 35.0, 50.0, -15.0])
 _TWISTS_RAD = st.one_of(st.sampled_from([0.0, pi / 2, -pi / 2, pi]), st.floats(-pi, pi))
 
 
+_TRANSFORMS = st.one_of(
+    st.just(IDENTITY),
+    st.builds(RigidTransform, _LENGTHS_MM, _LENGTHS_MM, _LENGTHS_MM, _TWISTS_RAD, _TWISTS_RAD, _TWISTS_RAD),
+)
+
+
 @st.composite
 def chains(draw: st.DrawFn) -> Arm:
-    """Two to seven joints of both kinds in any arrangement, now and then with a coupling."""
+    """Two to seven joints of both kinds in any arrangement, with origins and a tool, now and then with a coupling."""
     kinds = draw(
         st.lists(st.sampled_from([JointKind.REVOLUTE, JointKind.REVOLUTE, JointKind.PRISMATIC]), min_size=2, max_size=7)
     )
@@ -114,6 +133,7 @@ def chains(draw: st.DrawFn) -> Arm:
             3.0,
             30.0,
             300.0,
+            origin=draw(_TRANSFORMS),
         )
         for index, kind in enumerate(kinds)
     )
@@ -124,7 +144,15 @@ def chains(draw: st.DrawFn) -> Arm:
         weights = draw(st.lists(st.floats(-2, 2), min_size=len(others), max_size=len(others)))
         couplings = (Coupling(mimic, draw(st.floats(-pi, pi)), tuple(zip(others, weights, strict=True))),)
     hold = draw(st.sampled_from([PenHold.TOOL_AXIS, PenHold.FREE]))
-    return Arm("chain", "made for tests", joints, couplings, Pen(hold, (0.6, 0.0, -0.8), 5.0, 1.0), Workspace(0.0, 1.0))
+    return Arm(
+        "chain",
+        "made for tests",
+        joints,
+        couplings,
+        Pen(hold, (0.6, 0.0, -0.8), 5.0, 1.0),
+        Workspace(0.0, 1.0),
+        tool=draw(_TRANSFORMS),
+    )
 
 
 def random_configurations(arm: Arm, seed: int, count: int) -> FloatArray:

@@ -190,7 +190,7 @@ def file_text(arm: Arm) -> str:
         lines += [
             "[[coupling]]",
             f'joint = "{name[coupling.joint]}"',
-            f"constant_deg = {degrees(coupling.constant_rad)}",
+            f"constant_deg = {degrees(coupling.constant)}",
             f"coefficients = {{ {terms} }}",
         ]
     return "\n".join(lines) + "\n"

@@ -84,6 +84,18 @@ def test_what_did_not_change_stays_letter_by_letter(name: str) -> None:
     assert [(a.partition("=")[0], b.partition("=")[0]) for a, b in lines if a != b] == [("lift_mm ", "lift_mm ")]
 
 
+def test_links_of_modified_rows_are_changed_as_those_of_standard_ones(tmp_path: Path) -> None:
+    text = 'dh = "modified"\n' + arm_file_text("so101")
+    before = reread(text, tmp_path)
+    assert before.joints[1].origin.is_identity and not before.joints[0].origin.is_identity
+    after = other(before, 1.5)
+    assert canonical(reread(edited(text, before, after, "Found."), tmp_path)) == canonical(after)
+    quick = replace(before, pen=replace(before.pen, speed_mm_s=22.0))
+    changed = edited(text, before, quick, "Found.")
+    assert canonical(reread(changed, tmp_path)) == canonical(quick)
+    assert comments(changed) == [" Found.", *comments(text)]
+
+
 WRITTEN_OTHERWISE = """
 name = "odd"   # a name
 source = 'me'

@@ -17,7 +17,10 @@ from hypothesis import strategies as st
 from planner.arms.arm import Arm, JointKind, PenHold
 from planner.arms.arm_file import DEFAULT_ARM, arms_folder, known_arms, load_arm, read_arm_file
 from planner.arms.description import arm_description
+from planner.arms.rigid_transform import RigidTransform
 from planner.errors import ArmFileError, UnknownArm
+from planner.kinematics.frame_jacobian import chain_frames
+from tests.arms.chains import dh_matrix
 
 ARM = """\
 name = "mixed"
@@ -105,8 +108,55 @@ def test_units_are_converted(read: Reader) -> None:
     assert (waist.d_mm, wrist.a_mm, wrist.d_mm) == (40, 25, 0)
     assert arm.column_names == ("waist_deg", "reach_mm", "wrist_deg")
     assert arm.couplings[0].joint == 2
-    assert arm.couplings[0].constant_rad == pytest.approx(-math.pi / 2)
+    assert arm.couplings[0].constant == pytest.approx(-math.pi / 2)
     assert arm.couplings[0].coefficients == ((0, -0.5),)
+
+
+def test_slides_and_turns_drive_each_other(read: Reader) -> None:
+    """A slide's coupling is in mm, and a coefficient is so many mm for each degree, or degrees for each mm."""
+    turned = read(("{ waist = -0.5 }", "{ reach = 3.0 }"))
+    assert turned.couplings[0].coefficients == ((1, pytest.approx(math.radians(3.0))),)
+    driven = read(
+        ('joint = "wrist"\nconstant_deg = -90.0', 'joint = "reach"\nconstant_mm = 40.0'),
+        ("{ waist = -0.5 }", "{ waist = 0.25 }"),
+    )
+    assert driven.couplings[0].constant == 40.0
+    np.testing.assert_allclose(driven.complete(np.radians([80.0, 0.0])), [math.radians(80), 60.0, 0.0])
+
+
+def test_a_joint_has_an_origin_and_the_pen_a_holder(read: Reader) -> None:
+    arm = read(
+        ("a_mm = 25.0", "a_mm = 25.0\norigin = { x_mm = 3.0, yaw_deg = 90.0 }"),
+        ("[workspace]", "[tool]\ny_mm = 5.0\nroll_deg = 90.0\npen_length_mm = 70.0\n\n[workspace]"),
+    )
+    assert arm.joints[2].origin == RigidTransform(x_mm=3.0, yaw_rad=math.pi / 2)
+    # The holder's -z, out of the nib, is the last row's y.
+    np.testing.assert_allclose(arm.tool.matrix[:3, 3], [0.0, 75.0, 0.0], atol=1e-12)
+    assert arm.tool.roll_rad == pytest.approx(math.pi / 2)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_modified_rows_are_the_same_chain(seed: int, tmp_path: Path) -> None:
+    """Craig's rows, Rx(alpha) Tx(a) Rz(theta) Tz(d), multiplied out as they stand."""
+    random = np.random.default_rng(seed)
+    rows = np.column_stack((random.uniform(-180, 180, (4, 2)), random.uniform(-200, 200, (4, 2))))
+    text = ARM[: ARM.index("[[joints]]")].replace("[pen]", 'dh = "modified"\n\n[pen]').replace('"coupling"', '"free"')
+    limits = "\n".join(f"{key} = 90.0" for key in ("max_deg", "max_velocity_deg_s", "max_acceleration_deg_s2"))
+    for index, (theta, alpha, d, a) in enumerate(rows):
+        text += f'[[joints]]\nname = "q{index}"\nkind = "revolute"\ntheta_deg = {theta}\nalpha_deg = {alpha}\n'
+        text += f"d_mm = {d}\na_mm = {a}\nmin_deg = -90.0\n{limits}\nmax_jerk_deg_s3 = 900.0\n"
+    (tmp_path / "craig.toml").write_text(text, encoding="utf-8")
+    arm = read_arm_file(tmp_path / "craig.toml")
+    joints = random.uniform(-3, 3, 4)
+    frame = np.eye(4)
+    for joint, (theta, alpha, d, a) in zip(joints, rows, strict=True):
+        frame = frame @ dh_matrix(0, 0, a, np.radians(alpha)) @ dh_matrix(np.radians(theta) + joint, d, 0, 0)
+    np.testing.assert_allclose(chain_frames(arm, joints[None])[0, -1], frame, atol=1e-9)
+
+
+def test_a_modified_row_has_no_origin_beside_it(read: Reader) -> None:
+    with pytest.raises(ArmFileError, match=r"joints\[2\].origin: not beside dh = 'modified'"):
+        read(("[pen]", 'dh = "modified"\n\n[pen]'), ("a_mm = 25.0", "a_mm = 25.0\norigin = { x_mm = 3.0 }"))
 
 
 def test_what_is_left_out_has_its_documented_value(read: Reader) -> None:
@@ -259,7 +309,11 @@ FAULTS = {
     ),
     "coupled to nothing": (("{ waist = -0.5 }", "{ hips = -0.5 }"), ("coupling[0]: there is no joint 'hips'", "waist")),
     "couples nothing": (('joint = "wrist"', 'joint = "hand"'), ("coupling[0]: there is no joint 'hand'",)),
-    "coupled to a slide": (("{ waist = -0.5 }", "{ reach = -0.5 }"), ("coupling[0]: joint 'reach' is prismatic",)),
+    "coupled in another unit": (
+        ("constant_deg", "constant_mm"),
+        ("coupling[0].constant_mm: joint 'wrist' turns; give constant_deg",),
+    ),
+    "a tool as long as a street": (("[workspace]", "[tool]\nz_mm = 9900.0\n\n[workspace]"), ("10045 mm together",)),
     "coupled to itself": (("{ waist = -0.5 }", "{ wrist = -0.5 }"), ("'wrist' is itself driven",)),
     "coupled twice": (
         ("[[coupling]]", '[[coupling]]\njoint = "wrist"\nconstant_deg = 0.0\ncoefficients = {}\n\n[[coupling]]'),
@@ -355,7 +409,7 @@ def test_missing_file_and_folder_are_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["arm.urdf", "arm.urdf.xacro", "ARM.URDF"])
 def test_robot_descriptions_are_refused_with_what_to_do(name: str) -> None:
-    with pytest.raises(ArmFileError, match=r"not read yet; write the joints as rows"):
+    with pytest.raises(ArmFileError, match=rf"made of first: plan arm --urdf {name} -o my_arm.toml"):
         load_arm(name)
 
 

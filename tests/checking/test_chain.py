@@ -11,14 +11,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planner.arms.arm import Arm, Coupling, Joint, JointKind, PenHold
+from planner.arms.rigid_transform import IDENTITY, RigidTransform
 from planner.arrays import FloatArray
 from planner.checking.chain import chain_poses
 from planner.checking.check import check_trajectory
 from planner.trajectory import TRAVELLING, Trajectory
+from tests.arms.chains import transform_matrix
 from tests.checking.rig import AFFINE, RATE_HZ, arm_of, gantry, joint, with_limit
 
 angles = st.floats(-pi, pi)
 lengths = st.sampled_from([0.0, 0.0, 30.0, -12.5, 50.0])
+transforms = st.just(IDENTITY) | st.builds(RigidTransform, lengths, lengths, lengths, angles, angles, angles)
 
 
 @st.composite
@@ -27,7 +30,8 @@ def arms(draw: st.DrawFn) -> Arm:
         joint(f"q{index}", draw(st.sampled_from(JointKind)), draw(angles), draw(lengths), draw(lengths), draw(angles))
         for index in range(draw(st.integers(1, 7)))
     ]
-    return arm_of(*rows, tool_axis=(0.6, 0.0, -0.8))
+    moved = [replace(row, origin=draw(transforms)) for row in rows]
+    return replace(arm_of(*moved, tool_axis=(0.6, 0.0, -0.8)), tool=draw(transforms))
 
 
 def rotation_z(angle: float) -> FloatArray:
@@ -58,9 +62,10 @@ def test_poses_are_the_product_of_the_rows(arm: Arm, seed: int) -> None:
     for index, configuration in enumerate(positions):
         pose, nodes = np.eye(4), [np.zeros(3)]
         for one, position in zip(arm.joints, configuration, strict=True):
-            for half in row(one, position):
-                pose = pose @ half
+            for part in (transform_matrix(one.origin), *row(one, position)):
+                pose = pose @ part
                 nodes.append(pose[:3, 3])
+        pose = pose @ transform_matrix(arm.tool)
         np.testing.assert_allclose(poses.tip_mm[:, index], pose[:3, 3], atol=1e-10)
         np.testing.assert_allclose(poses.tool[:, index], pose[:3, :3] @ arm.pen.tool_axis, atol=1e-12)
         others = [node[2] for node in nodes if np.abs(node - pose[:3, 3]).max() > 1e-9]

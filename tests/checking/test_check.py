@@ -36,6 +36,12 @@ def faults(trajectory: Trajectory, arm: Arm | None = None) -> dict[str, Finding]
     return {finding.check: finding for finding in check_result.faults}
 
 
+def test_a_share_of_a_limit_counts_from_the_middle_of_what_is_allowed() -> None:
+    """Between 5 and 95, 20 is two thirds of the way out, and not four times the limit."""
+    assert Finding("position", True, 20.0, 5.0, middle=50.0).share == pytest.approx(2 / 3)
+    assert Finding("velocity", True, 20.0, 40.0).share == 0.5
+
+
 def test_a_sound_trajectory_passes() -> None:
     check_result = check_trajectory(hand().trajectory(), gantry(), DRAWING)
     assert check_result.passed, check_result.text()

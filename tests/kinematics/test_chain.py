@@ -10,7 +10,16 @@ from hypothesis import strategies as st
 
 from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Workspace
 from planner.kinematics.chain import Kinematics
-from tests.arms.chains import chains, dh_frames, kinematics_of, load_once, random_configurations, tips_by_product
+from tests.arms.chains import (
+    chains,
+    dh_frames,
+    dh_matrix,
+    kinematics_of,
+    load_once,
+    random_configurations,
+    tips_by_product,
+    transform_matrix,
+)
 
 SEEDS = st.integers(0, 2**32 - 1)
 built_anew = settings(max_examples=30, deadline=None)  # each example compiles a chain
@@ -22,34 +31,43 @@ def test_poses_and_nodes_are_those_of_the_matrix_product(arm: Arm, seed: int) ->
     kinematics = Kinematics(arm)
     independent = random_configurations(arm, seed, 3)
     poses, tips, nodes = kinematics.pose(independent), kinematics.tip_mm(independent), kinematics.nodes_mm(independent)
-    assert nodes.shape == (3, 2 * arm.n_joints, 3)
     for index, joints in enumerate(arm.complete(independent)):
         frames = dh_frames(arm, joints)
         np.testing.assert_allclose(poses[index], frames[-1], atol=1e-10)
         np.testing.assert_allclose(tips[index], frames[-1][:3, 3], atol=1e-10)
-        np.testing.assert_allclose(nodes[index, 1::2], [frame[:3, 3] for frame in frames[1:]], atol=1e-10)
-        slid = [
-            frame @ [0, 0, joint.d_mm + (0.0 if joint.kind is JointKind.REVOLUTE else value), 1]
-            for frame, joint, value in zip(frames, arm.joints, joints, strict=False)
-        ]
-        np.testing.assert_allclose(nodes[index, 0::2], np.array(slid)[:, :3], atol=1e-10)
+        corners, end = [], np.eye(4)
+        for joint, value in zip(arm.joints, joints, strict=True):
+            turn, slide = (value, 0.0) if joint.kind is JointKind.REVOLUTE else (0.0, value)
+            start = end @ transform_matrix(joint.origin)
+            corners += [start[:3, 3]] if joint.origin.length_mm else []
+            corners.append((start @ [0, 0, joint.d_mm + slide, 1])[:3])
+            end = start @ dh_matrix(joint.theta_rad + turn, joint.d_mm + slide, joint.a_mm, joint.alpha_rad)
+            corners.append(end[:3, 3])
+        corners += [frames[-1][:3, 3]] if arm.tool.length_mm else []
+        np.testing.assert_allclose(nodes[index], corners, atol=1e-10)
 
 
 @built_anew
 @given(arm=chains(), seed=SEEDS)
 def test_task_is_tip_and_pointing_and_its_jacobian_the_difference_quotient(arm: Arm, seed: int) -> None:
-    """Pointing is told as seen from the turning base, without what is zero by construction."""
+    """Pointing is the horizontal part of the axis, in as many components as it has; seen from the
+    turning base where the arm turns over its paper."""
     kinematics = Kinematics(arm)
     independent = random_configurations(arm, seed, 30)
     task, jacobian = kinematics.task_and_jacobian(independent)
     assert jacobian.shape == (30, kinematics.n_task, kinematics.n_independent)
     axis = kinematics.tool_axis(independent)
     np.testing.assert_allclose(axis, kinematics.pose(independent)[:, :3, :3] @ np.array(arm.pen.tool_axis), atol=1e-12)
-    turn = arm.complete(independent)[:, 0] if arm.joints[0].kind is JointKind.REVOLUTE else np.zeros(30)
-    c, s = np.cos(turn), np.sin(turn)
-    pointing = np.column_stack((c * axis[:, 0] + s * axis[:, 1], c * axis[:, 1] - s * axis[:, 0]))
-    held = (np.abs(pointing).max(axis=0) > 1e-9) & (arm.pen.hold is PenHold.TOOL_AXIS)
-    np.testing.assert_allclose(task, np.column_stack((kinematics.tip_mm(independent), pointing[:, held])), atol=1e-12)
+    np.testing.assert_allclose(task[:, :3], kinematics.tip_mm(independent), atol=1e-12)
+    if arm.pen.hold is PenHold.TOOL_AXIS:
+        turn = arm.complete(independent)[:, 0] if arm.joints[0].kind is JointKind.REVOLUTE else np.zeros(30)
+        c, s = np.cos(turn), np.sin(turn)
+        pointing = np.column_stack((c * axis[:, 0] + s * axis[:, 1], c * axis[:, 1] - s * axis[:, 0]))
+        off = np.linalg.norm(task[:, 3:], axis=1) - np.linalg.norm(pointing, axis=1)
+        assert np.abs(off).max() < 2e-4
+        held = np.abs(pointing).max(axis=0) > 1e-4
+        if kinematics.n_task == 3 + held.sum() and kinematics.turns_over_paper:
+            np.testing.assert_allclose(task[:, 3:], pointing[:, held], atol=1e-12)
     step = 1e-5
     for k in range(kinematics.n_independent):
         moved = step * np.eye(kinematics.n_independent)[k]

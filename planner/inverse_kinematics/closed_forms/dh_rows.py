@@ -31,6 +31,13 @@ def require_rows(arm: Arm, family: str, rows: Sequence[Row], *, coupled: bool = 
         faults.append(f"joints: {needs} {len(rows)} of them (value: {arm.n_joints})")
     for index, (joint, row) in enumerate(zip(arm.joints, rows, strict=False)):
         faults += [f"joints[{index}].{fault}" for fault in _faults(joint, row, needs)]
+    faults += [
+        f"joints[{index}].origin: {needs} rows without one"
+        for index, joint in enumerate(arm.joints)
+        if not joint.origin.is_identity
+    ]
+    if not arm.tool.is_identity:
+        faults.append(f"tool: {needs} the tip at the end of the last row, without [tool]")
     if arm.couplings and not coupled:
         faults.append(f"coupling: {needs} joints that move by themselves")
     if faults:

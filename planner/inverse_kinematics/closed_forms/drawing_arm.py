@@ -87,4 +87,4 @@ def _pen_direction(arm: Arm) -> float:
             f"arm {arm.name}",
             ["coupling: the closed form 'drawing_arm' needs joint 5 coupled to joints 2, 3 and 4 by -1 each"],
         )
-    return arm.couplings[0].constant_rad + sum(joint.theta_rad for joint in arm.joints[1:])
+    return arm.couplings[0].constant + sum(joint.theta_rad for joint in arm.joints[1:])

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from hardware.motion.tip import link_nodes_mm, tip_at
 from planner.arms.arm import Arm, Joint, JointKind, Pen, PenHold
 from planner.arms.arm_file import load_arm
+from planner.arms.rigid_transform import RigidTransform
 from planner.checking.chain import chain_poses
 
 DRAWING_ARM = load_arm("drawing_arm")
@@ -34,13 +35,26 @@ MIXED = replace(
 )
 
 
+OF_A_DESCRIPTION = replace(
+    MIXED,
+    name="with origins",
+    tool=RigidTransform(3.0, -4.0, 50.0, 0.2, -0.4, 1.0),
+    joints=tuple(
+        replace(joint, origin=RigidTransform(10.0 * k, 5.0, 20.0, 0.3 * k, -0.5, 0.7))
+        for k, joint in enumerate(MIXED.joints)
+    ),
+)
+
+
 def test_known_configuration(arm: Arm) -> None:
     tip = tip_at(arm, np.radians([90.0, 60.0, -60.0, -60.0, -30.0]))
     np.testing.assert_allclose(tip.position_mm, [0, 100, 0], atol=1e-9)
     np.testing.assert_allclose(tip.axis, [0, 0, -1], atol=1e-12)
 
 
-@pytest.mark.parametrize("chain", [DRAWING_ARM, load_arm("drawing_arm_2022"), MIXED], ids=lambda chain: chain.name)
+@pytest.mark.parametrize(
+    "chain", [DRAWING_ARM, load_arm("drawing_arm_2022"), MIXED, OF_A_DESCRIPTION], ids=lambda chain: chain.name
+)
 @given(data=st.data())
 def test_jacobian_is_the_finite_difference_and_the_chain_agrees_with_the_check(chain: Arm, data: st.DataObject) -> None:
     joints = np.array(data.draw(st.lists(st.floats(-3, 3), min_size=chain.n_joints, max_size=chain.n_joints)))
