@@ -134,8 +134,8 @@ def predicted(arm: Arm, played: Played, seed: int = 0) -> Prediction:
 
 
 def expected_rms_mm(arm: Arm, played: Played, seed: int = 0) -> float:
-    """`rms_mm` of the prediction for the same arms wherever a drawing lies, so that places can be compared: what is left
-    open at rest by a calibration, which no place has more of than another, counts by its variance across the lines.
+    """`rms_mm` of the prediction for the same arms wherever a drawing lies, so that places can be compared: what is
+    left open at rest by a calibration, alike at all places, counts by its variance across the lines.
     Errors: as `predicted`."""
     arms = _Arms.drawn(arm, played, np.random.default_rng(seed))
     line = _Line(_tips(arm, played.meant[None])[0], played.stroke, round(_WITHIN_S * played.rate_hz))
