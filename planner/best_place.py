@@ -161,7 +161,7 @@ def _coarse(context: PlanContext, strokes: Sequence[FloatArray], candidates: Seq
     steps_mm = np.hypot(*np.diff(points, axis=0).T)
     is_drawn = np.ones(len(points) - 1, dtype=bool)
     is_drawn[starts[1:] - 1] = False
-    reach_mm = float(branches[0].radii_mm[-1])
+    reach_mm = float(np.abs(branches[0].box_mm).max())
     errs = all(joint.servo or joint.bus for joint in arm.joints)
     found = np.empty(len(candidates))
     for index, motion in enumerate(candidates):
