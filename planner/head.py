@@ -20,6 +20,7 @@ from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.errors import TrajectoryFileError, UsageError
 from planner.pens import GroupBy, colour_of, hex_of
 from planner.settings import MOST_COPIES
+from planner.tile import Tile
 
 FORMAT_VERSION = 1
 LONGEST_LINE = 1 << 16
@@ -34,7 +35,8 @@ class Placement:
     canvas_mm: near and far side (arm x), right and left side (arm y) of the rectangle that it is within.
     margin_mm: kept free along the sides of that. scale: mm on paper for one on the page.
     rotate_deg: clockwise turn of the page before it is placed. mirror: left and right of the page change places
-    before it is turned. copies: where there is more than one; the map is that of the first.
+    before it is turned. copies: where there is more than one; the map is that of the first. tile: the sheet, where the
+    drawing is cut into several.
     """
 
     canvas_mm: tuple[float, float, float, float] | None = None
@@ -43,6 +45,11 @@ class Placement:
     rotate_deg: float | None = None
     mirror: bool = False
     copies: Copies | None = None
+    tile: Tile | None = None
+
+    def without_marks(self) -> Placement:
+        """Of what a pen draws that does not draw the register marks."""
+        return self if self.tile is None else replace(self, tile=replace(self.tile, marks_mm=()))
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,6 +192,13 @@ class Head:
         if (copies := placement.copies) is not None:
             steps = f"{_shortest(copies.step_x_mm)} {_shortest(copies.step_y_mm)}"
             entries.append(("copies", f"{copies.columns} {copies.rows} {steps}"))
+        if (tile := placement.tile) is not None:
+            entries += [
+                ("tile", f"{tile.column} {tile.row} {tile.columns} {tile.rows}"),
+                ("tile_shift_mm", " ".join(map(_shortest, tile.shift_mm))),
+                ("tile_window_mm", " ".join(map(_shortest, tile.window_mm))),
+                ("tile_marks_mm", " ".join(_shortest(value) for mark in tile.marks_mm for value in mark)),
+            ]
         if self.chosen.layers is not None:
             entries.append(("layers", _list(self.chosen.layers)))
         if self.chosen.by is not None:
@@ -294,7 +308,7 @@ def _placement(name: str, found: Mapping[str, tuple[str, int]]) -> Placement:
     mirror, line = found.get("mirror", ("no", None))
     if mirror not in ("yes", "no"):
         raise TrajectoryFileError(name, line, f"'# mirror:' is '{shown(mirror)}'; wanted yes or no")
-    return Placement(canvas_mm, margin_mm, scale, rotate_deg, mirror == "yes", _copies(name, found))
+    return Placement(canvas_mm, margin_mm, scale, rotate_deg, mirror == "yes", _copies(name, found), _tile(name, found))
 
 
 def _copies(name: str, found: Mapping[str, tuple[str, int]]) -> Copies | None:
@@ -308,6 +322,36 @@ def _copies(name: str, found: Mapping[str, tuple[str, int]]) -> Copies | None:
             f"'# copies:' are {columns:g} x {rows:g}; wanted whole numbers up to {MOST_COPIES}",
         )
     return Copies(int(columns), int(rows), step_x_mm, step_y_mm)
+
+
+def _tile(name: str, found: Mapping[str, tuple[str, int]]) -> Tile | None:
+    if "tile" not in found:
+        return None
+    column, row, columns, rows = _numbers(name, found, "tile", 4)
+    whole = all(value == int(value) for value in (column, row, columns, rows))
+    if not (whole and 1 <= column <= columns and 1 <= row <= rows):
+        raise TrajectoryFileError(
+            name,
+            found["tile"][1],
+            f"'# tile:' is '{shown(found['tile'][0])}'; wanted a column and a row, and how many there are of each",
+        )
+    shift_x, shift_y = _numbers(name, found, "tile_shift_mm", 2)
+    near, far, right, left = _numbers(name, found, "tile_window_mm", 4)
+    if not (near < far and right < left):
+        raise TrajectoryFileError(
+            name, found["tile_window_mm"][1], "'# tile_window_mm:' has a far side before the near one, or left of right"
+        )
+    count = 2 * (len(found.get("tile_marks_mm", ("", 0))[0].split()) // 2)
+    marks = _numbers(name, found, "tile_marks_mm", count)
+    return Tile(
+        int(column),
+        int(row),
+        int(columns),
+        int(rows),
+        (shift_x, shift_y),
+        (near, far, right, left),
+        tuple(zip(marks[::2], marks[1::2], strict=True)),
+    )
 
 
 def _left_out(name: str, found: Mapping[str, tuple[str, int]]) -> LeftOut:

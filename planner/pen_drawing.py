@@ -55,8 +55,8 @@ class PenDrawing:
     """One pen's part of a plan, filled station by station.
 
     strokes: (n, 2) each, arm mm, in the order in which they are drawn; timed: their motions; moves: the travel moves
-    before, between and after them, from rest and to rest in the air. left_out: what could not be drawn. notes: what to
-    say of it.
+    before, between and after them, from rest and to rest in the air. dropped: strokes that are left out on purpose.
+    left_out: these, and what could not be drawn. notes: what to say of it.
     """
 
     group: PenGroup
@@ -64,6 +64,7 @@ class PenDrawing:
     strokes: list[FloatArray] = field(default_factory=list)
     timed: list[TimedStroke] = field(default_factory=list)
     moves: list[TravelMove] = field(default_factory=list)
+    dropped: list[FloatArray] = field(default_factory=list)
     left_out: LeftOut = field(default_factory=LeftOut)
     notes: list[str] = field(default_factory=list)
 
@@ -83,10 +84,17 @@ class PenDrawing:
             settings.tolerance_mm,
         )
 
-    def order(self, svg_to_arm: FloatArray, start_mm: FloatArray) -> None:
-        """Strokes from the outlines, in their order from `start_mm` (2,) on. Errors: PlanError, UsageError."""
+    def take(self, svg_to_arm: FloatArray) -> None:
+        """Strokes from the outlines where `svg_to_arm` (2, 3) puts them, as their lines are wanted. Errors: PlanError,
+        UsageError."""
+        self.strokes, self.dropped, self.notes = _strokes(self.group, svg_to_arm, self.context.settings)
+
+    def order(self, start_mm: FloatArray) -> None:
+        """What of the strokes the arm reaches, in its order from `start_mm` (2,) on. Errors: PlanError."""
         model, settings = self.context.model, self.context.settings
-        self.strokes, self.left_out, self.notes = _strokes(self.group, svg_to_arm, model, settings)
+        self._lose(_drawn(self.dropped), [])
+        self.strokes, lost, notes = _within_reach(repeated(self.strokes, settings.passes), model, settings)
+        self._lose(lost, notes)
         if settings.keep_order or settings.reverse:
             if settings.reverse:
                 self.strokes = [stroke[::-1] for stroke in reversed(self.strokes)]
@@ -146,11 +154,11 @@ def require_bounded_whole(drawings: Sequence[PenDrawing]) -> None:
 
 
 def _strokes(
-    group: PenGroup, svg_to_arm: FloatArray, model: ArmModel, settings: PlanSettings
-) -> tuple[list[FloatArray], LeftOut, list[str]]:
-    """Strokes (n, 2), arm mm, what was left out as out of reach, and what is to be said of them."""
+    group: PenGroup, svg_to_arm: FloatArray, settings: PlanSettings
+) -> tuple[list[FloatArray], list[FloatArray], list[str]]:
+    """Strokes (n, 2), arm mm, those that are too short to be drawn, and what is to be said of them."""
     warnings: list[str] = []
-    left_out = LeftOut()
+    short: list[FloatArray] = []
     short_gaps = gaps_to_draw(group.outlines, svg_to_arm)
     if short_gaps:
         warnings.append(f"gaps of dashes under {SHORTEST_GAP_MM:g} mm on paper, drawn solid: {len(short_gaps)}")
@@ -167,10 +175,18 @@ def _strokes(
         strokes = simplified(strokes, settings.simplify_mm)
     if settings.min_length_mm:
         strokes, short = longer(strokes, settings.min_length_mm)
-        left_out += _drawn(short)
         if short:
             warnings.append(f"shorter than {settings.min_length_mm:g} mm and left out: {counted(len(short), 'stroke')}")
-    strokes = repeated(strokes, settings.passes)
+    return strokes, short, warnings
+
+
+def _within_reach(
+    strokes: list[FloatArray], model: ArmModel, settings: PlanSettings
+) -> tuple[list[FloatArray], LeftOut, list[str]]:
+    """What of strokes (n, 2) the arm reaches, if nothing else is wanted, in pieces that each lie in one branch; what
+    that leaves out, and what is to be said of it."""
+    warnings: list[str] = []
+    lost = LeftOut()
     branches = model.branches(settings.weights)
     if settings.skip_unreachable:
         n_taps = _drawn(strokes).taps
@@ -178,7 +194,6 @@ def _strokes(
             strokes, _in_reach(branches), max(float(np.abs(branch.box_mm).max()) for branch in branches)
         )
         lost = LeftOut(lost_mm, n_taps - _drawn(strokes).taps)
-        left_out += lost
         if lost_mm or lost_whole:
             whole = counted(lost_whole - lost.taps, "stroke") + " and " + counted(lost.taps, "tap")
             warnings.append(f"out of reach and left out: {lost_mm:.1f} mm of line; {whole} whole")
@@ -189,7 +204,7 @@ def _strokes(
                 f"split, as no one branch reaches all of each: {counted(n_split, 'stroke')},"
                 f" with {counted(n_more, 'more pen lift')}"
             )
-    return strokes, left_out, warnings
+    return strokes, lost, warnings
 
 
 def _drawn(strokes: Sequence[FloatArray]) -> LeftOut:

@@ -15,6 +15,7 @@ from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.assembly import assembled, verify
+from planner.best_place import best_place
 from planner.drawing.drawing import Drawing
 from planner.drawing.pen_groups import chosen_layers, pen_groups
 from planner.drawing.source import DrawingSource, SvgInMemory
@@ -25,13 +26,13 @@ from planner.execution.workers import ALONE, ChunkExecutor, Workers, executor_of
 from planner.head import Chosen, LeftOut, PathWork
 from planner.motion.speed_limit import pen_speed_mm_s
 from planner.pen_drawing import PenDrawing, lift_mm, require_bounded_whole
-from planner.placement.place import Placed, placed
+from planner.placement.place import Placed, inked_outlines, placed
 from planner.progress import Report, unreported
 from planner.redundancy.arm_model import ArmModel
-from planner.settings import PlanSettings
+from planner.settings import PlaceKind, PlanSettings
 from planner.summary import PlanSummary
 from planner.trajectory import TRAVELLING, Trajectory
-from planner.workspace.canvas import canvas_of
+from planner.workspace.canvas import Canvas, canvas_of
 
 _SMALL_BYTES = 60_000
 """Drawings in shorter files, of a few thousand points, are done sooner than worker processes have started."""
@@ -46,6 +47,14 @@ class Plan:
     drawing: Drawing
     by_pen: tuple[Trajectory, ...] = ()
 
+    @property
+    def warnings(self) -> list[str]:
+        return self.summary.warnings
+
+    def lines(self) -> list[str]:
+        """A few lines to read."""
+        return self.summary.lines()
+
 
 def plan(
     drawing_file: DrawingSource,
@@ -58,20 +67,90 @@ def plan(
     Errors: PlannerError, before any result exists."""
     report("reading", 0, 1)
     context = PlanContext.of(arm or load_arm(settings.arm), settings)
-    model, arm = context.model, context.model.arm
-    lift_mm(arm, settings)  # said before the work begins
-    with executor_of(_worth_hiring(workers, drawing_file), context.make_ready) as executor:
+    lift_mm(context.model.arm, settings)  # said before the work begins
+    with executor_of(worth_hiring(workers, drawing_file), context.make_ready) as executor:
         drawing = read_drawing(drawing_file, partial(report, "reading"), options=settings.reading)
-        place, drawings = _ordered(drawing, context, report)
-        require_bounded_whole(drawings)
-        drawings = _through(executor, drawings, PenDrawing.move, "within the joint limits", report)
-        drawings = _through(executor, drawings, PenDrawing.travel, "with the arm's links apart", report)
+        place, drawings = _placed(executor, drawing, context, report)
+        return planned(executor, context, drawing, drawing_file.name, place, drawings, report)
+
+
+def placed_strokes(
+    drawing_file: DrawingSource, model: ArmModel, settings: PlanSettings
+) -> tuple[list[FloatArray], list[str]]:
+    """Strokes (n, 2) in arm mm, placed and in the order that they are planned in, and what was left out on the way.
+    Errors: PlannerError."""
+    context = PlanContext(model, settings)
+    drawing = read_drawing(drawing_file, options=settings.reading)
+    with executor_of(ALONE) as executor:
+        place, drawings = _placed(executor, drawing, context, unreported)
+    drawings = _ordered(drawings, place, unreported)
+    return list(chain.from_iterable(one.strokes for one in drawings)), told_of(place.drawing, drawings)
+
+
+def canvas_for(context: PlanContext) -> Canvas:
+    """The rectangle of the paper that is drawn on. Errors: PlanError, UsageError."""
+    settings = context.settings
+    return canvas_of(context.model, settings.canvas, lift_mm(context.model.arm, settings))
+
+
+def _placed(
+    executor: ChunkExecutor, drawing: Drawing, context: PlanContext, report: Report
+) -> tuple[Placed, list[PenDrawing]]:
+    """Where the drawing goes, and what each pen draws, before it has an order. Errors: PlannerError."""
+    settings, canvas = context.settings, canvas_for(context)
+    report("placing", 0, 1)
+    if settings.place is not PlaceKind.BEST:
+        return taken(placed(drawing, canvas, settings), context, report)
+    anywhere = placed(drawing, canvas, replace(settings, skip_unreachable=True))
+    anywhere, drawings = taken(anywhere, context, report)
+    best = best_place(executor, context, inked_outlines(drawing), anywhere, drawings, report)
+    place = replace(placed(drawing, canvas, settings, best.motion), won=best.told)
+    return taken(place, context, report)
+
+
+def taken(place: Placed, context: PlanContext, report: Report) -> tuple[Placed, list[PenDrawing]]:
+    """What is chosen of a placed drawing, and what each pen draws of it, before it has an order. Errors:
+    PlannerError."""
+    model, settings = context.model, context.settings
+    chosen = chosen_layers(place.drawing, settings.layers)
+    report("joining", 0, 1)
+    own_mm_s = pen_speed_mm_s(model.arm, settings)
+    models = {0.0: model}  # by how far the tip of a pen sticks out
+    drawings = []
+    for group in pen_groups(chosen, settings.pens_by, settings.pens, scale_of(place.svg_to_arm)):
+        of_pen = settings.with_pen(group.pen, own_mm_s, group.speed_share) if group.is_named else settings
+        height_mm = group.pen.height_mm
+        if height_mm not in models:
+            models[height_mm] = ArmModel(model.arm.holding(height_mm))
+        is_usual = of_pen == settings and not height_mm
+        one = PenDrawing(group, context if is_usual else PlanContext(models[height_mm], of_pen))
+        one.take(place.svg_to_arm)
+        drawings.append(one)
+    return replace(place, drawing=chosen), drawings
+
+
+def planned(
+    executor: ChunkExecutor,
+    context: PlanContext,
+    drawing: Drawing,
+    name: str,
+    place: Placed,
+    drawings: Sequence[PenDrawing],
+    report: Report,
+) -> Plan:
+    """From the strokes of each pen to a plan. drawing: as it was read from the file of that name. Errors: PlanError,
+    UsageError."""
+    settings, model, arm = context.settings, context.model, context.model.arm
+    drawings = _ordered(drawings, place, report)
+    require_bounded_whole(drawings)
+    drawings = _through(executor, drawings, PenDrawing.move, "within the joint limits", report)
+    drawings = _through(executor, drawings, PenDrawing.travel, "with the arm's links apart", report)
     samples = assembled(drawings)
     left_out = sum((one.left_out for one in drawings), LeftOut())
     (a, c, e), (b, d, f) = place.svg_to_arm.tolist()
     trajectory = Trajectory(
         arm=settings.arm,
-        drawing=drawing_file.name,
+        drawing=name,
         method=settings.method.value,
         rate_hz=settings.rate_hz,
         columns=arm.column_names,
@@ -91,53 +170,23 @@ def plan(
     )
     verify(trajectory, arm)
     by = settings.pens_by
-    by_pen = tuple(
+    parts = [
         trajectory.part(first, last, pen, Chosen(settings.layers, by, kinds))
         for pen, (first, last), kinds in zip(samples.pens, samples.parts, samples.kinds, strict=False)
-    )
+    ]
+    by_pen = (*parts[:1], *(replace(part, placement=place.told.without_marks()) for part in parts[1:]))
     return Plan(trajectory, _summary(trajectory, model, drawings, place), drawing, by_pen)
 
 
-def placed_strokes(
-    drawing_file: DrawingSource, model: ArmModel, settings: PlanSettings
-) -> tuple[list[FloatArray], list[str]]:
-    """Strokes (n, 2) in arm mm, placed and in the order that they are planned in, and what was left out on the way.
-    Errors: PlannerError."""
-    place, drawings = _ordered(
-        read_drawing(drawing_file, options=settings.reading), PlanContext(model, settings), unreported
-    )
-    return list(chain.from_iterable(one.strokes for one in drawings)), _told(place.drawing, drawings)
-
-
-def _ordered(drawing: Drawing, context: PlanContext, report: Report) -> tuple[Placed, list[PenDrawing]]:
-    """Where the drawing goes, and what each pen draws, in the order in which it does. Errors: PlannerError."""
-    model, settings = context.model, context.settings
-    report("placing", 0, 1)
-    canvas = canvas_of(model, settings.canvas, lift_mm(model.arm, settings))
-    place = placed(drawing, canvas, settings)
-    chosen = chosen_layers(place.drawing, settings.layers)
-    place = replace(place, drawing=chosen)
-    mm_per_unit = scale_of(place.svg_to_arm)
-    report("joining", 0, 1)
-    own_mm_s = pen_speed_mm_s(model.arm, settings)
-    drawings = []
-    models = {0.0: model}  # by how far the tip of a pen sticks out
-    start_mm = canvas.to_arm_mm(np.zeros(2))
-    for group in pen_groups(chosen, settings.pens_by, settings.pens, mm_per_unit):
-        of_pen = settings.with_pen(group.pen, own_mm_s, group.speed_share) if group.is_named else settings
-        height_mm = group.pen.height_mm
-        if height_mm not in models:
-            models[height_mm] = ArmModel(model.arm.holding(height_mm))
-        is_usual = of_pen == settings and not height_mm
-        one = PenDrawing(group, context if is_usual else PlanContext(models[height_mm], of_pen))
-        one.order(place.svg_to_arm, start_mm)
+def _ordered(drawings: Sequence[PenDrawing], place: Placed, report: Report) -> list[PenDrawing]:
+    """The pens that draw anything, with what each draws in its order. Errors: PlanError where none does."""
+    start_mm = place.canvas.to_arm_mm(np.zeros(2))
+    for one in drawings:
+        one.order(start_mm)
         report("ordering strokes", 0, 1)
         if one.strokes:
-            drawings.append(one)
             start_mm = one.strokes[-1][-1]
-    if not drawings:
-        raise PlanError("nothing of the drawing is within reach")
-    return place, drawings
+    return _left(drawings, "nothing of the drawing is within reach")
 
 
 def _through(
@@ -158,9 +207,15 @@ def _through(
 
         station(one, executor, told if len(drawings) > 1 else report, first)
         first += n_strokes
+    return _left(drawings, f"nothing of the drawing can be drawn {how}")
+
+
+def _left(drawings: Sequence[PenDrawing], otherwise: str) -> list[PenDrawing]:
+    """The pens that have something to draw, the first of which tells of the others too. Errors: PlanError where none
+    has."""
     left = [one for one in drawings if one.strokes]
     if not left:
-        raise PlanError(f"nothing of the drawing can be drawn {how}")
+        raise PlanError(otherwise)
     lost = [one for one in drawings if not one.strokes]
     for one in lost:
         left[0].left_out += one.left_out
@@ -168,7 +223,7 @@ def _through(
     return left
 
 
-def _told(drawing: Drawing, drawings: Sequence[PenDrawing]) -> list[str]:
+def told_of(drawing: Drawing, drawings: Sequence[PenDrawing]) -> list[str]:
     """What is to be said of the drawing, and of what each pen draws of it."""
     notes = drawing.notes()
     if len(drawings) == 1:
@@ -176,7 +231,7 @@ def _told(drawing: Drawing, drawings: Sequence[PenDrawing]) -> list[str]:
     return notes + [f"{one.group.pen.name}: {note}" for one in drawings for note in one.notes]
 
 
-def _worth_hiring(workers: Workers, drawing_file: DrawingSource) -> Workers:
+def worth_hiring(workers: Workers, drawing_file: DrawingSource) -> Workers:
     """The workers, or none beside this process where a drawing is too small for them."""
     try:
         n_bytes = len(drawing_file.content) if isinstance(drawing_file, SvgInMemory) else drawing_file.stat().st_size
@@ -196,8 +251,9 @@ def _summary(trajectory: Trajectory, model: ArmModel, drawings: Sequence[PenDraw
         **{one.name: getattr(account, one.name) for one in fields(account)},
         size_mm=place.size_mm,
         scale=place.scale,
-        warnings=_told(place.drawing, drawings),
+        warnings=told_of(place.drawing, drawings),
         where=place.board.where(),
+        won=place.won,
         hints=place.notes,
         pens=tuple(pen.name for pen in trajectory.pens),
     )

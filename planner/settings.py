@@ -36,10 +36,12 @@ class CanvasKind(StrEnum):
 
 
 class PlaceKind(StrEnum):
-    """What of a drawing is fitted, aligned or put somewhere: its page, or the extent of its ink."""
+    """What of a drawing is fitted, aligned or put somewhere: its page, or the extent of its ink. BEST: its page, turned
+    and moved to where it is drawn soonest and most accurately."""
 
     PAGE = "page"
     INK = "ink"
+    BEST = "best"
 
 
 class Anchor(StrEnum):
@@ -239,17 +241,35 @@ class PlanSettings:
     def _check_placement(self) -> None:
         if self.fit and (self.scale is not None or self.at_mm is not None):
             other = "scale" if self.scale is not None else "at"
-            raise UsageError(f"fit and {other} contradict each other: a drawing that fills its room has neither choice")
+            raise UsageError(
+                f"fit and {other} contradict each other: a drawing that fills its room has neither choice; leave"
+                " one of them out"
+            )
         if self.at_mm is not None:
             if self.align is not Anchor.CENTRE:
-                raise UsageError("at and align contradict each other: either one says where the drawing goes")
+                raise UsageError(
+                    "at and align contradict each other: either one says where the drawing goes; leave one of them out"
+                )
             x, y = self.at_mm
             place = number_in("at", x, zero=True, minimum=-inf), number_in("at", y, zero=True, minimum=-inf)
             object.__setattr__(self, "at_mm", place)
         elif self.origin is not Anchor.TOP_LEFT:
-            raise UsageError("origin says which point of the drawing goes to at, and there is no at")
+            raise UsageError(
+                "origin says which point of the drawing goes to at, and there is no at: give one, or leave origin out"
+            )
+        if self.place is PlaceKind.BEST:
+            others = {"at": self.at_mm is not None, "align": self.align is not Anchor.CENTRE}
+            for other, is_there in others.items():
+                if is_there:
+                    raise UsageError(
+                        f"place best and {other} contradict each other: either one says where it goes; leave one out"
+                    )
+            if tuple(self.copies) != (1, 1):
+                raise UsageError(
+                    "place best and copies contradict each other: copies lie in rows and columns; leave one out"
+                )
         if self.orientation is not Orientation.AUTO and self.paper is None:
-            raise UsageError("orientation says which way the paper lies, and there is no paper")
+            raise UsageError("orientation says which way the paper lies, and there is no paper: name one")
         if not isinstance(self.paper, PaperSize | None):
             raise UsageError(f"paper is a PaperSize, not {self.paper!r:.40}")
         if self.layers is not None and not (self.layers and all(isinstance(layer, str) for layer in self.layers)):
@@ -264,4 +284,4 @@ class PlanSettings:
         if not (isinstance(columns, int) and isinstance(rows, int) and columns >= 1 and rows >= 1):
             raise UsageError(f"copies are columns and rows, one of each at least, not {self.copies!r:.40}")
         if columns * rows > MOST_COPIES:
-            raise UsageError(f"{columns} x {rows} copies are more than {MOST_COPIES}")
+            raise UsageError(f"{columns} x {rows} copies are more than {MOST_COPIES}: ask for fewer")

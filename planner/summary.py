@@ -12,7 +12,7 @@ from planner.counted import clock, counted
 class PlanSummary(Account):
     """The account of the planned trajectory, and what else is to be said. size_mm: of the ink, width and height.
     scale: millimetres on paper for one on the SVG's page. where: to lay the paper, in words. hints: what might be asked
-    for instead, the most useful first. pens: in their order."""
+    for instead, the most useful first. pens: in their order. won: what the place of the drawing wins."""
 
     size_mm: tuple[float, float] = (0.0, 0.0)
     scale: float = 1.0
@@ -20,6 +20,7 @@ class PlanSummary(Account):
     where: str = ""
     hints: tuple[str, ...] = ()
     pens: tuple[str, ...] = ()
+    won: str = ""
 
     def lines(self) -> list[str]:
         """A few lines to read."""
@@ -32,6 +33,6 @@ class PlanSummary(Account):
             f"takes {clock(self.duration_s)} ({shares}); {self.mean_speed()}",
             f"{counted(self.n_samples, 'sample')} at {self.rate_hz:g} Hz",
             *([f"pens: {', '.join(self.pens)}"] if self.pens else []),
-            *filter(None, [self.where]),
+            *filter(None, [self.won, self.where]),
             *(f"hint: {hint}" for hint in self.hints[:1]),
         ]

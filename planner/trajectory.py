@@ -117,6 +117,12 @@ class Trajectory:
         return pandas.DataFrame({"t_s": self.times_s, **joints, "pen": self.pen.astype(int), "stroke": self.stroke})
 
     @property
+    def title(self) -> str:
+        """What it is a trajectory of, as headings say it."""
+        name, tile = self.drawing or "trajectory", self.placement.tile
+        return name if tile is None else f"{name}, sheet {tile}"
+
+    @property
     def svg_to_arm(self) -> FloatArray:
         """(2, 3) `svg_to_arm_mm` as a matrix."""
         a, b, c, d, e, f = self.svg_to_arm_mm

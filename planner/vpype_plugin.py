@@ -12,6 +12,7 @@ import click
 import vpype as vp
 import vpype_cli
 
+_PLAN_ALONE = ("list_layers", "report", "split", "tile")
 _HELP_OPTION = "an option of plan and its value, such as margin=1cm, or its name alone, such as mirror; may be repeated"
 
 
@@ -33,7 +34,7 @@ def arm(document: vp.Document, output: str, arm: str | None, options: tuple[str,
     from planner.cli.plan import plan_parser
     from planner.cli.plan_options import settings_of
     from planner.drawing.source import SvgInMemory
-    from planner.errors import PlannerError
+    from planner.errors import PlannerError, UsageError
     from planner.pipeline import plan
     from planner.progress import unreported
     from planner.trajectory import write_trajectory
@@ -42,7 +43,11 @@ def arm(document: vp.Document, output: str, arm: str | None, options: tuple[str,
     vp.write_svg(text, document, document.page_size, set_date=False)
     arguments = ["-", *(["--arm", arm] if arm else []), *(f"--{option}" for option in options)]
     try:
-        settings = settings_of(plan_parser().parse_args(arguments))
+        wanted = plan_parser().parse_args(arguments)
+        for name in _PLAN_ALONE:
+            if getattr(wanted, name):
+                raise UsageError(f"{name.replace('_', '-')} goes with plan, not with arm, which writes one trajectory")
+        settings = settings_of(wanted)
         planned = plan(SvgInMemory(Path(output).stem, text.getvalue().encode()), settings, unreported)
         write_trajectory(planned.trajectory, Path(output))
     except PlannerError as error:

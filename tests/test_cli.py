@@ -69,6 +69,13 @@ class _Plan:
     trajectory: Trajectory
     summary: _Summary
 
+    @property
+    def warnings(self) -> list[str]:
+        return self.summary.warnings
+
+    def lines(self) -> list[str]:
+        return self.summary.lines()
+
 
 @pytest.fixture
 def drawing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:

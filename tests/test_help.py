@@ -88,7 +88,7 @@ def test_examples_are_accepted(made: Plan, tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr(planner.pipeline, "plan", lambda *_, **__: made)
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "preferences"))
     (tmp_path / "plan.toml").write_text('[presets.fast]\nspeed = "8cm/s"\n')
-    for name in ("flower", "city", "letter", "stamp", "map", "logo", "drawings/one"):
+    for name in ("flower", "city", "letter", "stamp", "poster", "map", "logo", "drawings/one"):
         (tmp_path / f"{name}.svg").parent.mkdir(exist_ok=True)
         (tmp_path / f"{name}.svg").write_text(SVG)
     for name in ("my_arm", "my_arm_2"):

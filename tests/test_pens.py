@@ -19,6 +19,7 @@ from planner.drawing.drawing import Drawing, Outline
 from planner.drawing.layer_name import LayerName
 from planner.drawing.pen_groups import chosen_layers, only, pen_groups
 from planner.drawing.source import SvgInMemory
+from planner.drawing.svg import read_drawing
 from planner.errors import TrajectoryFileError, UsageError
 from planner.pens import GroupBy, Pen, colour_of, hex_of
 from planner.pens_file import read_pens
@@ -191,6 +192,29 @@ def test_pens_draw_one_after_the_other_in_register(tmp_path: Path, monkeypatch: 
     assert not whole.pen[change]
     assert main(["run", "all.csv", "--fast", "--quiet"]) == 0
     assert main(["run", "all.csv", "--quiet"]) == 2  # nobody is at a terminal to change the pen
+
+
+def test_layers_are_listed_as_they_are_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("d.svg").write_text(
+        SVG.replace("H40", "H140").replace("</svg>", '<g id="words"><text y="20" fill="black">ill</text></g></svg>'),
+        encoding="utf-8",
+    )
+
+    def listed(*options: str) -> dict[str, str]:
+        assert main(["d.svg", "--list-layers", *options]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        return dict(line.rsplit(": ", 1) for line in lines)
+
+    usual = listed()
+    assert usual['a b, "c" ✏'].startswith("1 line, 90 mm") and len(usual) == 4
+    assert listed("--crop", "none")['a b, "c" ✏'].startswith("1 line, 130 mm")
+    assert len(listed("--text", "skip")) == 3
+    assert len(chosen_layers(read_drawing(Path("d.svg")), ('a b, "c" ✏',)).outlines) == 1
+    assert listed("--text", "outline") != usual
+    assert main(["d.svg", "--list-layers", "--font", "none.ttf"]) == 2
 
 
 def _longer(arm: Arm, height_mm: float) -> Arm:

@@ -59,7 +59,7 @@ def test_a_pipeline_ends_in_a_trajectory(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read_trajectory(tmp_path / "u.csv").positions, made.positions)
 
 
-@pytest.mark.parametrize("wrong", [["-x", "margn=1cm"], ["--arm", "nobody"], ["-x", "margin=1m"]])
+@pytest.mark.parametrize("wrong", [["-x", "margn=1cm"], ["--arm", "nobody"], ["-x", "margin=1m"], ["-x", "tile"]])
 def test_what_plan_refuses_ends_the_pipeline(tmp_path: Path, wrong: list[str]) -> None:
     done = piped([*VPYPE, *PICTURE, "arm", *wrong, "t.csv"], folder=tmp_path)
     assert done.returncode and "Traceback" not in done.stderr and "Error: " in done.stderr

@@ -17,6 +17,7 @@ from planner.checking.mapping import map_findings, map_trouble
 from planner.checking.pen import place_of
 from planner.checking.polyline import DenseLines, dense_lines, joined_lines
 from planner.checking.repeats import most_repeated
+from planner.checking.sheet import on_the_sheet
 from planner.checking.tone import tone_findings
 from planner.checking.wanted import WantedLines, wanted_lines
 from planner.counted import counted
@@ -34,6 +35,8 @@ SPACING_MM = 0.02
 _MOST_POINTS = 2_000_000
 _TOLD_SHARE = 0.005
 """By how much more than the header says may be missing: lengths are measured on other chords."""
+_HIDDEN = 4.0
+"""Tolerances of line that a single short stroke may be near other ink with, at both of its ends."""
 
 
 def drawing_findings(
@@ -56,7 +59,7 @@ def drawing_findings(
         ]
     work = trajectory.path_work
     limit = tolerance_mm + FLATTENING_MM + work.simplify_mm
-    allowed = _dense([*lines.allowed, *_bridges(lines.allowed, work.join_mm or 0.0)])
+    allowed = _dense(lines.allowed)
     off_mm = [allowed.distance_mm(pen.points_mm) for pen in pen_lines]
     return [
         *shape,
@@ -80,8 +83,10 @@ def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: Floa
 
 
 def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
-    """The lines of what the header tells that was drawn, as often as it was."""
-    affine, copies = trajectory.svg_to_arm, trajectory.placement.copies
+    """The lines of what the header tells that was drawn, as often as it was, and of it what its sheet holds."""
+    affine, copies, tile = trajectory.svg_to_arm, trajectory.placement.copies, trajectory.placement.tile
+    shift = np.zeros(2) if tile is None else np.array(tile.shift_mm)
+    affine = np.column_stack((affine[:, :2], affine[:, 2] - shift))  # of the whole, which fills are laid out for
     of_pictures = image_lines(drawing, affine) if drawing.reading.image.is_on else []
     is_wanted = told_by(trajectory.chosen, replace(drawing, outlines=(*drawing.outlines, *of_pictures)), affine)
     if not trajectory.fill.draws_anything:
@@ -102,16 +107,25 @@ def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
     if of_pictures:
         within = flatten_all([line for line in of_pictures if is_wanted(line)], affine, FLATTENING_MM)
         lines = WantedLines([*lines.allowed, *within], [*lines.required, *within])
-    if copies is None:
-        return lines
-    steps = copies.steps_mm
+    if copies is not None:
+        lines = _repeated(lines, copies.steps_mm)
+    bridges = _bridges(lines.allowed, trajectory.path_work.join_mm or 0.0)
+    lines = WantedLines([*lines.allowed, *bridges], lines.required)
+    return lines if tile is None else on_the_sheet(_repeated(lines, shift[None]), tile, FLATTENING_MM)
+
+
+def _repeated(lines: WantedLines, steps: FloatArray) -> WantedLines:
+    """The lines once for each of the steps (n, 2), moved by it."""
     return WantedLines(*([line + step for step in steps for line in some] for some in (lines.allowed, lines.required)))
 
 
 def _outlines(trajectory: Trajectory, drawing: Drawing) -> list[FloatArray]:
     """The lines that are no picture's, where there are pictures to be held against these."""
-    is_wanted = drawing.reading.image.is_on
-    return flatten_all(drawing.outlines, trajectory.svg_to_arm, FLATTENING_MM) if is_wanted else []
+    if not drawing.reading.image.is_on:
+        return []
+    tile = trajectory.placement.tile
+    lines = flatten_all(drawing.outlines, trajectory.svg_to_arm, FLATTENING_MM)
+    return lines if tile is None else [*lines, *tile.mark_lines()]
 
 
 def _bridges(lines: Sequence[FloatArray], gap_mm: float) -> list[FloatArray]:
@@ -196,7 +210,7 @@ def _missing(
     )
     told = trajectory.left_out
     as_asked = (
-        0.5 * told.length_mm - limit <= missing.length_mm <= (1 + _TOLD_SHARE) * told.length_mm + limit
+        0.5 * told.length_mm - _HIDDEN * limit <= missing.length_mm <= (1 + _TOLD_SHARE) * told.length_mm + limit
         and 0.5 * told.taps <= missing.taps <= told.taps
     )
     x, y = wanted.points_mm[index].tolist()

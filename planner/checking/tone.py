@@ -54,6 +54,9 @@ def tone_findings(
         if shape.pixels is None:
             continue
         seen = _seen(shape, trajectory.svg_to_arm)
+        if (tile := trajectory.placement.tile) is not None:
+            near, far, right, left = tile.window_mm
+            seen = shapely.intersection(seen, shapely.box(near, right, far, left))
         above = [_frame(later, trajectory.svg_to_arm) for later in shapes[index + 1 :] if later.outline]
         patches = _patches(seen.buffer(-options.line_mm), side_mm, above, lines)
         if not len(patches):

@@ -27,7 +27,7 @@ from planner.drawing.scene.shape import Scene, Shape
 _SHORTEST_GAP_MM = 0.5
 _ROUNDING = 1e-4
 _EXACT_MM = 1e-7
-_CRUMB_MM = 0.02
+CRUMB_MM = 0.02
 """A cut may leave as much of a line that a region only touches."""
 _PAPER = 1e-3
 """By so much of the page a rectangle may be smaller, and still is paper."""
@@ -80,7 +80,7 @@ class _Cuts:
         self._affine, self._chord_mm, self._is_generous = affine, chord_mm, is_generous
         along_mm = 2.0 * chord_mm
         self._shown_mm, self._hidden_mm = (along_mm, _EXACT_MM) if is_generous else (_EXACT_MM, along_mm)
-        self._crumb_mm = 0.0 if is_generous else _CRUMB_MM
+        self._crumb_mm = 0.0 if is_generous else CRUMB_MM
         self._known: dict[int, BaseGeometry] = {}
         self.has_cut = False
 
@@ -111,7 +111,7 @@ class _Cuts:
         lines = flatten_all(shape.lines, self._affine, self._chord_mm)
         if shape.fill is not None and shape.stroke is None:
             lines = [line for line in lines if not filled([line], is_even_odd=False).is_empty]
-        return [shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0]) for line in lines]
+        return as_lines(lines)
 
     def _shown_of(self, lines: Sequence[BaseGeometry], region: BaseGeometry) -> list[BaseGeometry]:
         """What of lines and taps is in a region."""
@@ -124,15 +124,8 @@ class _Cuts:
         return self._cut(lines, is_whole, lambda parts: shapely.difference(parts, region))
 
     def _cut(self, lines: Sequence[BaseGeometry], is_whole: Sequence[bool], overlay: _Overlay) -> list[BaseGeometry]:
-        left: list[BaseGeometry] = []
-        for line, whole in zip(lines, is_whole, strict=True):
-            if whole:
-                left.append(line)
-                continue
-            self.has_cut = True
-            if shapely.get_dimensions(line) == 1:
-                left += [part for part in _torn(line, overlay) if part.length > self._crumb_mm]
-        return left
+        self.has_cut |= not all(is_whole)
+        return cut_lines(lines, is_whole, overlay, self._crumb_mm)
 
     def _shown(self, region: BaseGeometry) -> BaseGeometry:
         if id(region) not in self._known:
@@ -164,6 +157,25 @@ class _Cuts:
             and shapely.LineString(line).length < longest_mm
             and all(len(dashes.query(shapely.Point(end), "dwithin", _EXACT_MM)) for end in (line[0], line[-1]))
         ]
+
+
+def cut_lines(
+    lines: Sequence[BaseGeometry], is_whole: Sequence[bool], overlay: _Overlay, crumb_mm: float
+) -> list[BaseGeometry]:
+    """Lines and taps with those that are not whole cut by an overlay; of lines that leaves no less than a crumb, and of
+    taps nothing."""
+    left: list[BaseGeometry] = []
+    for line, whole in zip(lines, is_whole, strict=True):
+        if whole:
+            left.append(line)
+        elif shapely.get_dimensions(line) == 1:
+            left += [part for part in _torn(line, overlay) if part.length > crumb_mm]
+    return left
+
+
+def as_lines(lines: Sequence[FloatArray]) -> list[BaseGeometry]:
+    """Polylines (n, 2) and taps (1, 2)."""
+    return [shapely.LineString(line) if len(line) > 1 else shapely.Point(line[0]) for line in lines]
 
 
 def _told(shape: Shape) -> Outline:

@@ -24,7 +24,8 @@ def add_placement_options(placement: argparse._ArgumentGroup) -> None:
         choices=[kind.value for kind in PlaceKind],
         default=default.place.value,
         help="what is placed: the drawing's page, ink wherever it is on it, so that drawings of one page land in"
-        " register; or the extent of its ink, as for drawings without a page (default: %(default)s)",
+        " register; or the extent of its ink, as for drawings without a page; best also turns and moves it, at the same"
+        " size, to where it is drawn soonest and most accurately (default: %(default)s)",
     )
     placement.add_argument(
         "--fit",

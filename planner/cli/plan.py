@@ -16,6 +16,7 @@ from planner.cli.parser import Parser
 from planner.cli.plan_options import add_plan_options, preferred, settings_of
 from planner.cli.reading import reading_of
 from planner.cli.report import check_report, write_report_of
+from planner.cli.sheets import check_tile
 from planner.cli.terminal import print_lines, print_summary, print_warnings, progress, waiting
 from planner.errors import UsageError
 from planner.files import STANDARD
@@ -23,6 +24,8 @@ from planner.progress import of_all_stages
 
 if TYPE_CHECKING:
     from planner.drawing.options import ReadingOptions
+    from planner.pipeline import Plan
+    from planner.tiled_plan import TiledPlan
     from planner.trajectory import Trajectory
 
 _CHORD_MM = 0.01
@@ -76,6 +79,9 @@ examples:
   plan flower.svg --preset fast                    options that you gave a name (plan config)
   vpype read x.svg write -f svg - | plan - | plan run -
   plan stamp.svg --at 20 15 --copies 3x2           six of them at true size, the first 20 mm right and 15 mm down
+  plan flower.svg --place best --scale 0.5         turned and moved to where it is drawn soonest and most accurately
+  plan poster.svg --tile -o poster.csv             at its true size, on as many sheets as that takes
+  plan flower.svg --tile --paper a3                fills an A3 that is put together from sheets
 
 Lengths are in mm, or carry one of the suffixes mm cm in px (96 px to the inch).
 
@@ -100,6 +106,8 @@ def plan(arguments: list[str]) -> int:
     if options.report:
         check_report(options.report, drawing, target)
     settings = settings_of(options)
+    if options.tile:
+        check_tile(settings, target)
     last = "report" if options.report else "writing"
 
     with (
@@ -109,30 +117,46 @@ def plan(arguments: list[str]) -> int:
 
         def report(stage: str, done: int, total: int) -> None:
             raise_if_interrupted()
-            show(stage, *of_all_stages(stage, done, total, last))
+            show(stage, *((done, total) if options.tile else of_all_stages(stage, done, total, last)))
 
         report("reading", 0, 1)
         from planner.pipeline import plan as plan_drawing
         from planner.trajectory import write_trajectory
 
-        planned = plan_drawing(drawing, settings, report, options.workers)
+        planned: Plan | TiledPlan
+        if options.tile:
+            from planner.tiled_plan import plan_tiles
+
+            planned = plan_tiles(drawing, settings, report, options.workers)
+            plans = {f"{sheet.tile}": sheet.plan for sheet in planned.sheets}
+        else:
+            planned = plan_drawing(drawing, settings, report, options.workers)
+            plans = {"": planned}
         raise_if_interrupted()
-        made = {target: planned.trajectory}
-        if options.split and planned.by_pen:
-            made = {_of_pen(target, index, part): part for index, part in enumerate(planned.by_pen, 1)}
-        for file, trajectory in made.items():
-            report("writing", 0, 1)
+        made: dict[Path, Trajectory] = {}
+        for sheet, one in plans.items():
+            file = target.with_name(f"{target.stem}-{sheet}{target.suffix}") if sheet else target
+            if options.split and one.by_pen:
+                made |= {_of_pen(file, index, part): part for index, part in enumerate(one.by_pen, 1)}
+            else:
+                made[file] = one.trajectory
+        for file in made:
             check_target(file, drawing)
+        for index, (file, trajectory) in enumerate(made.items()):
+            report("writing", index, len(made))
             write_trajectory(trajectory, file)
         written = list(made)
         if options.report:
-            written.append(write_report_of(planned, settings, arguments, options.report, partial(report, "report")))
-    print_warnings(planned.summary.warnings)
+            for sheet, one in plans.items():
+                written.append(
+                    write_report_of(one, settings, arguments, options.report / sheet, partial(report, "report"))
+                )
+    print_warnings(planned.warnings)
     if options.events:
-        tell_summary(planned.summary.lines(), map(str, written))
+        tell_summary(planned.lines(), map(str, written))
     elif not options.quiet:
         wrote = [f"wrote {file}" for file in written if str(file) != STANDARD]
-        print_summary([*planned.summary.lines(), *wrote], target)
+        print_summary([*planned.lines(), *wrote], target)
     return 0
 
 
@@ -187,6 +211,12 @@ def plan_parser() -> Parser:
     parser.add_argument("--list-layers", action="store_true", help="print the drawing's layers, and plan nothing")
     parser.add_argument(
         "--split", action="store_true", help="a trajectory for each pen, traj_PEN.csv, instead of one with halts"
+    )
+    parser.add_argument(
+        "--tile",
+        action="store_true",
+        help="cut a page or a --paper larger than the canvas into sheets with register marks, each a trajectory of its"
+        " own, traj-COLUMN-ROW.csv",
     )
     add_plan_options(parser)
     add_events_option(parser)

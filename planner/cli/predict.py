@@ -62,7 +62,7 @@ def predict(arguments: list[str]) -> int:
         from planner.plots.expected import plot_expected
         from planner.plots.figure_file import save_figure
 
-        heading = trajectory.drawing or "trajectory"
+        heading = trajectory.title
         save_figure(plot_expected(figures, heading, f"on {arm.name}: {figures.summary()}"), options.plot)
     lines = [json.dumps(figures.as_dict(), indent=2)] if options.json else figures.lines()
     print_summary(lines, *filter(None, [options.plot]))

@@ -51,7 +51,7 @@ def save_pictures(
             from planner.plots.drawing_error import plot_drawing_error
             from planner.plots.figure_file import save_figure
 
-            heading = job.trajectory.drawing or "trajectory"
+            heading = job.trajectory.title
             save_figure(plot_drawing_error(wanted, drawn, heading, f"drawn on {job.arm.name}: {text}"), target)
     return [f"what was drawn is {text}"]
 

@@ -60,14 +60,21 @@ def wanted_layers(drawing: Drawing, layers: Sequence[str] | None) -> set[str]:
         return {name for name in names if LayerName.of(name).is_drawn}
     wanted: set[str] = set()
     for layer in layers:
-        found = {name for name in names if layer == name} or {
-            name for name in names if layer.isdecimal() and LayerName.of(name).number == int(layer[:9])
-        }
+        found = (
+            {name for name in names if layer == name}
+            or {name for name in names if layer == on_one_line(name)}
+            or {name for name in names if layer.isdecimal() and LayerName.of(name).number == int(layer[:9])}
+        )
         if not found:
-            there = ", ".join(name or "(no layer)" for name in names)
+            there = ", ".join(on_one_line(name) or "(no layer)" for name in names)
             raise UsageError(f"{drawing.source} has no layer '{layer:.40}'; it has {there}")
         wanted |= found
     return wanted
+
+
+def on_one_line(name: str) -> str:
+    """A name as people see it, and may say it: with single spaces, whatever stands between its words."""
+    return " ".join(name.split())
 
 
 def layer_names(drawing: Drawing) -> list[str]:
@@ -125,7 +132,7 @@ def _of_layers(layers: Mapping[str, Sequence[Outline]], pens: Sequence[Pen]) -> 
             raise UsageError(
                 f"no pen draws layer '{name:.40}'; name it in the layers of one of {known}, or leave it out by --layers"
             )
-        pen = pen or Pen(" ".join(name.split()) or "no layer", outlines[0].colour)
+        pen = pen or Pen(on_one_line(name) or "no layer", outlines[0].colour)
         last = groups[-1] if groups else None
         halts = last is None or last.pen != pen or told.halts
         if last is not None and not halts and (last.speed_share, 0.0) == (told.speed_share, told.delay_s):
@@ -159,5 +166,6 @@ def described(drawing: Drawing, length_mm: Callable[[Sequence[Outline]], float])
         outlines = [outline for outline in drawing.outlines if outline.layer == name]
         colours = dict.fromkeys(hex_of(outline.colour) for outline in outlines)
         shown = ", ".join(list(colours)[:6]) + (" ..." if len(colours) > 6 else "")
-        lines.append(f"{name or '(no layer)'}: {counted(len(outlines), 'line')}, {length_mm(outlines):.0f} mm, {shown}")
+        told = on_one_line(name) or "(no layer)"
+        lines.append(f"{told}: {counted(len(outlines), 'line')}, {length_mm(outlines):.0f} mm, {shown}")
     return lines

@@ -133,6 +133,17 @@ def predicted(arm: Arm, played: Played, seed: int = 0) -> Prediction:
     )
 
 
+def expected_rms_mm(arm: Arm, played: Played, seed: int = 0) -> float:
+    """`rms_mm` of the prediction for the same arms wherever a drawing lies, so that places can be compared: what is
+    left open at rest by a calibration, alike at all places, counts by its variance across the lines.
+    Errors: as `predicted`."""
+    arms = _Arms.drawn(arm, played, np.random.default_rng(seed))
+    line = _Line(_tips(arm, played.meant[None])[0], played.stroke, round(_WITHIN_S * played.rate_hz))
+    at_rest = (arms.fields, 0.0) if arm.accuracy is None else (0.0 * arms.fields, arm.accuracy.tip_mm)
+    off = line.distances(_tips(arm, arms.play(played)) + at_rest[0])[:, played.stroke >= 0]
+    return float(np.hypot(np.sqrt((off**2).mean()), at_rest[1]))
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class _Arms:
     """slack, lag_s, phase_s: (k, n_joints) of k arms; fields: (k, n, 3) errors in mm that are there at rest."""

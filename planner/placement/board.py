@@ -64,7 +64,7 @@ def board_of(
     if min(board.room_mm) <= 0:
         raise UsageError(
             f"a margin of {margin_mm:g} mm leaves nothing of the {'paper' if paper else 'canvas'} of"
-            f" {rectangle.width_mm:.1f} x {rectangle.height_mm:.1f} mm"
+            f" {rectangle.width_mm:.1f} x {rectangle.height_mm:.1f} mm: choose a smaller --margin"
         )
     return board
 

@@ -21,11 +21,14 @@ from planner.drawing.image_options import ImageStyle
 from planner.errors import DoesNotFit, UsageError
 from planner.head import Placement
 from planner.placement.board import Board, board_of
+from planner.placement.motions import Motion
 from planner.settings import PlaceKind, PlanSettings
 from planner.workspace.canvas import Canvas
 
 _ROUNDING_MM = 0.01
 """Programs round the size of the page."""
+_LEAST_MM = 0.1
+"""What is smaller is a dot."""
 _WORTH_A_HINT = 1.25
 """How much larger a drawing has to become for a turn to be recommended."""
 _PAGE_TO_ARM = np.array([[0.0, -1.0], [-1.0, 0.0]])
@@ -36,15 +39,18 @@ _MIRROR = np.array([[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 @dataclass(frozen=True, eq=False, slots=True)
 class Placed:
     """svg_to_arm: (2, 3) of the first copy. drawing: with all copies. told: for the header. scale: mm on paper for one
-    on the page. size_mm: width and height of the ink of one copy. notes: what to say of it."""
+    on the page. size_mm: width and height of the ink of one copy. won: what its place wins. notes: what to say of
+    it."""
 
     svg_to_arm: FloatArray
     drawing: Drawing
     told: Placement
     scale: float
     size_mm: tuple[float, float]
+    canvas: Canvas
     board: Board
     notes: tuple[str, ...]
+    won: str = ""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -59,14 +65,12 @@ class _Box:
         return self.high - self.low
 
 
-def placed(drawing: Drawing, canvas: Canvas, settings: PlanSettings) -> Placed:
-    """Where a drawing goes by the settings. Errors: UsageError where a margin leaves no room, DoesNotFit where ink
-    would be beyond the paper or the canvas, unless what is out of reach is left out anyway."""
-    turn = compose(rotation(settings.rotate_deg), _MIRROR if settings.mirror else _AS_IT_IS)
-    turned = compose(turn, drawing.user_to_page)
+def placed(drawing: Drawing, canvas: Canvas, settings: PlanSettings, motion: Motion | None = None) -> Placed:
+    """Where a drawing goes by the settings, and by a motion from there. Errors: UsageError where a margin leaves no
+    room, DoesNotFit where ink would be beyond the paper or the canvas, unless what is out of reach is left out
+    anyway."""
     pictures = _frames(drawing)
-    ink = _Box(*extent([*drawing.outlines, *pictures], turned))
-    box = _page_box(drawing, turn) if settings.place is PlaceKind.PAGE and drawing.has_page else ink
+    turned, ink, box = _turned(drawing, settings)
     board = board_of(canvas, settings.paper, settings.orientation, settings.margin_mm, bool(box.size[0] > box.size[1]))
     counts = np.array(settings.copies)
     cell = (np.array(board.room_mm) - (counts - 1) * settings.margin_mm) / counts
@@ -74,6 +78,8 @@ def placed(drawing: Drawing, canvas: Canvas, settings: PlanSettings) -> Placed:
         raise UsageError(
             f"{counts[0]} x {counts[1]} copies leave no room for the drawing: ask for fewer, or for a smaller --margin"
         )
+    if settings.scale and settings.scale * ink.size.max() < _LEAST_MM < ink.size.max():
+        raise UsageError(f"a scale of {settings.scale:g} leaves nothing to see of the drawing: choose a larger one")
     factor = settings.scale or (_filling(box.size, cell) if settings.is_fitted else 1.0)
     step = (cell if settings.is_fitted else factor * box.size) + settings.margin_mm
     corner = _corner(board, canvas, factor * box.size, cell, (counts - 1) * step + factor * box.size, settings)
@@ -83,6 +89,13 @@ def placed(drawing: Drawing, canvas: Canvas, settings: PlanSettings) -> Placed:
     )
     svg_to_arm = frozen(compose(onto_arm, turned))
     inked = _Box(corner + factor * (ink.low - box.low), corner + factor * (ink.high - box.low) + (counts - 1) * step)
+    turn_deg = settings.rotate_deg
+    if motion is not None:
+        svg_to_arm = frozen(compose(motion.matrix, svg_to_arm))
+        turn_deg = (turn_deg + motion.turn_deg + 180.0) % 360.0 - 180.0
+        low, high = extent(inked_outlines(drawing), svg_to_arm)
+        corner = np.array([canvas.left_mm, canvas.far_mm])
+        inked = _Box(corner - high[::-1], corner - low[::-1])
     # A page at its true size has margins of its own, and what is put somewhere by hand has none.
     if not settings.is_fitted and (box is not ink or settings.at_mm is not None):
         board = replace(board, margin_mm=0.0)
@@ -96,7 +109,7 @@ def placed(drawing: Drawing, canvas: Canvas, settings: PlanSettings) -> Placed:
         canvas_mm=None if beyond else sides,
         margin_mm=None if beyond else board.margin_mm,
         scale=factor,
-        rotate_deg=settings.rotate_deg,
+        rotate_deg=turn_deg,
         mirror=settings.mirror,
         copies=copies if copies.count > 1 else None,
     )
@@ -108,13 +121,33 @@ def placed(drawing: Drawing, canvas: Canvas, settings: PlanSettings) -> Placed:
         from planner.drawing.image.lines import with_images
 
         drawing = with_images(drawing, svg_to_arm)
-    hints = _turning(box.size, cell, factor, settings.rotate_deg) if settings.is_fitted else []
+    hints = _turning(box.size, cell, factor, settings.rotate_deg) if settings.is_fitted and motion is None else []
     hints += _filling_hint(drawing) if settings.fill.kind is FillKind.NONE else []
     if drawing.reading.image.is_on and not settings.reading.image.is_on:
         hints += [_style_hint(drawing.reading.image.style)]
-    width, height = factor * ink.size
+    width, height = inked.size if motion is not None else factor * ink.size
     size_mm = float(width), float(height)
-    return Placed(svg_to_arm, copies.of(drawing, svg_to_arm), told, factor, size_mm, board, tuple(hints))
+    return Placed(svg_to_arm, copies.of(drawing, svg_to_arm), told, factor, size_mm, canvas, board, tuple(hints))
+
+
+def box_size_mm(drawing: Drawing, settings: PlanSettings) -> tuple[float, float]:
+    """Width and height of what is placed of a drawing, turned and scaled by the settings but not fitted."""
+    width, height = (settings.scale or 1.0) * _turned(drawing, settings)[2].size
+    return float(width), float(height)
+
+
+def _turned(drawing: Drawing, settings: PlanSettings) -> tuple[FloatArray, _Box, _Box]:
+    """From user units to the turned page, (2, 3), and the boxes on it of the ink and of what is placed."""
+    turn = compose(rotation(settings.rotate_deg), _MIRROR if settings.mirror else _AS_IT_IS)
+    turned = compose(turn, drawing.user_to_page)
+    ink = _Box(*extent(inked_outlines(drawing), turned))
+    is_page = settings.place is not PlaceKind.INK and drawing.has_page
+    return turned, ink, _page_box(drawing, turn) if is_page else ink
+
+
+def inked_outlines(drawing: Drawing) -> list[Outline]:
+    """All that there may be ink within: the outlines, and what goes around pictures."""
+    return [*drawing.outlines, *_frames(drawing)]
 
 
 def _frames(drawing: Drawing) -> list[Outline]:
@@ -166,13 +199,15 @@ def _beyond(inked: _Box, board: Board, canvas: Canvas) -> str:
     over_mm = np.concatenate((low - inked.low, inked.high - high))
     if (over_mm <= _ROUNDING_MM).all():
         return ""
-    what = f"the {board.size} sheet, as far as the arm reaches," if board.size else "the canvas"
+    what = f"the {board.size} sheet" if board.size else "the canvas"
+    if board.sheet is not None and board.sheet != board.rectangle:
+        what += ", as far as the arm reaches,"
     width, height = board.room_mm
     room = f"{what} has {width:.1f} x {height:.1f} mm within its margin"
     if (inked.size > np.array(board.room_mm) + _ROUNDING_MM).any():
         return (
             f"the drawing is {inked.size[0]:.1f} x {inked.size[1]:.1f} mm, and {room}: use --fit, a smaller --scale or"
-            " --margin, --rotate or --skip-unreachable"
+            " --margin, --rotate, --skip-unreachable, or --tile, which takes several sheets"
         )
     worst = int(np.argmax(over_mm))
     side = ("left", "top", "right", "bottom")[worst]

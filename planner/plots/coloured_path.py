@@ -58,7 +58,7 @@ def plot_speed(
             f"{account.mean_speed()}, at most {speed[fastest]:.1f} mm/s "
             f"({fastest / trajectory.rate_hz:.2f} s, stroke {trajectory.stroke[fastest]}); on {trajectory.arm}"
         )
-        return sheet.finish(trajectory.drawing or "trajectory", remark, axes.get_legend_handles_labels()[0])
+        return sheet.finish(trajectory.title, remark, axes.get_legend_handles_labels()[0])
 
 
 def plot_error(
@@ -139,7 +139,7 @@ def plot_error(
             f"{trajectory.stroke[sample]}); tolerance {tolerance_mm:g} mm"
         )
         handles = [*axes.get_legend_handles_labels()[0], *below.get_legend_handles_labels()[0]]
-        return sheet.finish(trajectory.drawing or "trajectory", remark, handles)
+        return sheet.finish(trajectory.title, remark, handles)
 
 
 def colour_lines(

@@ -12,6 +12,7 @@ from planner.counted import clock
 from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
 from planner.drawing.image.lines import with_images
+from planner.placement.tiling import held_by
 from planner.plots.ink import draw_inks, inks_of, legend_of
 from planner.plots.look import USUAL, Look
 from planner.plots.paper import paper_panel, paper_patch, paper_sides_mm, pieces, pt_per_mm_of
@@ -57,15 +58,19 @@ def plot_drawing(
         draw_inks(axes, inks, pt_per_mm, zorder=3.0)
         legend = [*axes.get_legend_handles_labels()[0], *legend_of(inks, look)]
         remark = f"{account.amount()}, in {clock(account.duration_s)} on {trajectory.arm}, seen from behind its base"
-        return sheet.finish(trajectory.drawing or "trajectory", remark, legend)
+        return sheet.finish(trajectory.title, remark, legend)
 
 
 def _wanted(trajectory: Trajectory, drawing: Drawing | None) -> tuple[FloatArray, FloatArray]:
     """The outlines on the paper: lines with a row of NaN after each, and the places of pen taps."""
     if drawing is None:
         return np.empty((0, 2)), np.empty((0, 2))
-    drawing = with_images(drawing, trajectory.svg_to_arm)
+    tile = trajectory.placement.tile
+    shift = np.zeros(2) if tile is None else np.array(tile.shift_mm)
+    drawing = with_images(drawing, trajectory.svg_to_arm - np.column_stack((np.zeros((2, 2)), shift)))
     strokes = flatten_all(trajectory.all_of(drawing).outlines, trajectory.svg_to_arm, _FLATTEN_TOLERANCE_MM)
+    if tile is not None:
+        strokes = [*held_by(tile, strokes), *tile.mark_lines()]
     gap = np.full((1, 2), np.nan)
     lines = [part for stroke in strokes if len(stroke) > 1 for part in (stroke, gap)]
     taps = [stroke for stroke in strokes if len(stroke) == 1]

@@ -100,7 +100,7 @@ class Film:
         self._above, self._views = above, tuple((axes, *_arm_on(axes, colours)) for axes in (above, beside))
         speed = "" if motion.speed_factor == 1 else f", {motion.speed_factor:.3g} times as fast"
         self.figure = sheet.finish(
-            motion.trajectory.drawing or "trajectory",
+            motion.trajectory.title,
             f"{motion.arm.name} draws, from above and square to the arm{speed}",
             [*self._views[0][1:], *legend_of(inks, look)],
         )

@@ -67,4 +67,4 @@ def plot_sheet(trajectory: Trajectory, tip_mm: FloatArray, look: Look = USUAL) -
             + thinned(inks)
         )
         legend = legend_of(inks, look) if trajectory.pens else []
-        return sheet.finish(trajectory.drawing or "trajectory", remark, legend)
+        return sheet.finish(trajectory.title, remark, legend)

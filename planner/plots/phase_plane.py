@@ -78,7 +78,7 @@ def plot_phase_plane(
             f"{arm.joints[int(speeds.binding[nearest])].name}, {100 * use[nearest]:.0f} % of it at "
             f"{speeds.way_mm[nearest]:.1f} mm"
         )
-        return sheet.finish(trajectory.drawing or "trajectory", remark, axes.get_legend_handles_labels()[0])
+        return sheet.finish(trajectory.title, remark, axes.get_legend_handles_labels()[0])
 
 
 def _top(speeds: PathSpeeds) -> float:

@@ -46,7 +46,7 @@ def film_of(
     scale_mm = max(float(np.abs(nodes_mm).max()), float(np.abs(motion.tip_mm).max()), 1.0) / _LARGEST
     near, far, right, left = paper_sides_mm(trajectory, motion.tip_mm[:, :2])
     return {
-        "name": trajectory.drawing or "trajectory",
+        "name": trajectory.title,
         "arm": motion.arm.name,
         "rate": trajectory.rate_hz,
         "begin": motion.begin_s,

@@ -124,7 +124,7 @@ def plot_profiles(
             f"method {trajectory.method}; derivatives are differences of the samples"
         )
         legend = _legend(look, any(profile.is_over for column in columns for profile in column))
-        return sheet.finish(trajectory.drawing or "trajectory", remark, legend, _HEADS)
+        return sheet.finish(trajectory.title, remark, legend, _HEADS)
 
 
 def _shown(trajectory: Trajectory, window: tuple[float, float]) -> str:

@@ -65,7 +65,7 @@ def plot_timeline(
             )
             + f" on {trajectory.arm}; lifting and lowering are below the clearance of {clearance_mm:g} mm"
         )
-        return sheet.finish(trajectory.drawing or "trajectory", remark, height.get_legend_handles_labels()[0], 1.2)
+        return sheet.finish(trajectory.title, remark, height.get_legend_handles_labels()[0], 1.2)
 
 
 def _colour(phase: Phase, look: Look) -> str:

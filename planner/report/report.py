@@ -72,7 +72,7 @@ def report_page(planned: Planned, report: Callable[[int, int], None] = lambda do
     for one in _sections(planned, tip_mm, frame):
         sections.append(one)
         report(min(len(sections), _N_SECTIONS), _N_SECTIONS)
-    heading = clean(trajectory.drawing) or "trajectory"
+    heading = clean(trajectory.title)
     head = element(
         "head",
         element("meta", charset="utf-8"),
@@ -112,7 +112,7 @@ def _sections(planned: Planned, tip_mm: FloatArray, frame: Markup) -> Iterator[S
     yield Section("film", "Film", frame)
     yield Section("figures", "In figures", joined((account_facts(summary), _phases(summary))))
     if planned.expected is not None:
-        picture = expected_picture(planned.expected, trajectory.drawing or "trajectory")
+        picture = expected_picture(planned.expected, trajectory.title)
         yield Section(picture.name, picture.heading, figure(picture))
     for picture in pictures(trajectory, summary, model, planned.drawing, tip_mm, planned.reach_mm, settings):
         yield Section(picture.name, picture.heading, figure(picture))

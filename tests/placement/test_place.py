@@ -191,6 +191,12 @@ def test_a_page_at_its_true_size_may_be_larger_than_the_canvas_but_its_ink_may_n
         placed(drawing_of((20.0, 30.0), (140.0, 70.0), page=(200.0, 100.0)), CANVAS, PlanSettings(fit=False))
 
 
+def test_a_scale_that_leaves_a_dot_is_refused_but_dots_are_drawn_at_any() -> None:
+    with pytest.raises(UsageError, match="a scale of 1e-06 leaves nothing to see of the drawing: choose a larger one"):
+        placed(drawing_of((0.0, 0.0), (60.0, 50.0)), CANVAS, PlanSettings(scale=1e-6))
+    assert placed(drawing_of((7.0, 3.0)), CANVAS, PlanSettings(scale=1e-6)).scale == 1e-6
+
+
 @pytest.mark.parametrize("fit", [True, False])
 def test_a_margin_has_to_leave_room(fit: bool) -> None:
     with pytest.raises(UsageError, match="40 mm"):

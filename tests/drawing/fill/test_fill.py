@@ -229,3 +229,11 @@ def test_too_many_lines_are_refused(tmp_path: Path) -> None:
 def test_lines_have_nothing_to_be_filled() -> None:
     drawing = read('<path d="M5 5L90 50M5 5h9" stroke="red"/><path d="M20 50h30v30z" stroke="red"/>')
     assert drawing.scene is not None and n_areas(drawing.scene) == 1
+
+
+@pytest.mark.parametrize("is_zigzag", [False, True])
+def test_rows_between_the_parts_of_an_area_are_no_lines(is_zigzag: bool) -> None:
+    """An i has a dot, and rows pass between the two."""
+    letter = shapely.union_all([shapely.box(0.0, 0.0, 2.0, 10.0), shapely.box(0.0, 13.0, 2.0, 15.0)])
+    lines = hatched(letter, 0.0, 0.5, is_zigzag=is_zigzag)
+    assert lines and all(shapely.covers(letter.buffer(1e-6), shapely.LineString(line)) for line in lines)
