@@ -17,7 +17,7 @@ from planner.kinematics.chain import Kinematics
 from planner.kinematics.limits import Limits
 from planner.motion.between_samples import stroke_excess
 from planner.motion.stroke_motion import StrokeMotions, motions
-from planner.placement.pen_path import PenPaths
+from planner.placement.pen_path import StrokePaths
 from planner.ragged import starts_of, within
 from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
@@ -41,7 +41,7 @@ class Timed:
 def timed_within(
     kinematics: Kinematics,
     limits: Limits,
-    paths: PenPaths,
+    paths: StrokePaths,
     splines: JointPaths,
     rate_limit: FloatArray,
     tolerance_mm: float,
@@ -50,9 +50,9 @@ def timed_within(
     """The motion of each path: paths and splines with the same cells, rate_limit (total cells, n_fractions) as
     `TimingProblem.of` has it."""
     derivatives = (splines.positions(FRACTIONS, 1), splines.positions(FRACTIONS, 2), splines.positions(FRACTIONS, 3))
-    problem = TimingProblem.of(paths.n_cells, derivatives, limits, rate_limit)
+    problem = TimingProblem.of(splines.n_cells, derivatives, limits, rate_limit)
     timed: dict[int, Timed] = {}
-    left = np.arange(len(paths.n_cells))
+    left = np.arange(len(splines.n_cells))
     for around in 2 ** np.arange(_ROUNDS):
         timing = minimum_time(problem)
         motion = motions(splines, timing.rates, limits, rate_hz)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import BoolArray, FloatArray
-from planner.placement.polylines import Polylines, lines_of_cells
+from planner.placement.polylines import Polylines, largest_of_parts, lines_of_parts
 from planner.placement.rounded_path import rounded
 from planner.placement.smoothest_path import smoothest
 from planner.placement.tube import Tube
@@ -19,11 +19,14 @@ ROUNDED_SHARE = 0.6
 """Share of the tolerance within which corners are rounded first: that fixes how long the cells are."""
 _TUBE_SHARE = 0.85
 """Share of it that a tube takes unless told otherwise: between the bounded points a path strays a little further."""
+_SURPLUS, _MOST = 0.5, 0.97
+"""How much of what a tube leaves of the tolerance a path may take between the bounded points, and how much of the
+tolerance at most: where it takes more, the tube is made narrower."""
 _ROUNDS = 3
 _TIGHTER, _TIGHTEST = 0.95, 0.6
 """A tube that a path strays from by more than the tolerance gets narrower around: what is aimed at, in tolerances, and
 the least factor."""
-_HALVINGS = 12
+_HALVINGS = 6
 _PER_CELL = 4
 _SAMPLED = np.arange(_PER_CELL) / _PER_CELL
 """Fractions of every cell at which a path is compared with its polyline."""
@@ -71,34 +74,32 @@ def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPat
     return smoothed(polylines, tolerance_mm).pen
 
 
-def smoothed(
-    polylines: Sequence[FloatArray], tolerance_mm: float, radius_mm: FloatArray | None = None
-) -> StrokePaths:
+def smoothed(polylines: Sequence[FloatArray], tolerance_mm: float, radius_mm: float | None = None) -> StrokePaths:
     """Smooth paths that stay within the tolerance of their polylines, and these of them, unless their deviation says
     otherwise: rounds of refinement come to an end.
 
-    polylines: each (n >= 2, 2) in mm with distinct neighbours; radius_mm: (n_paths,) of the tube that each is to be the
-    smoothest in. Work is linear in the number of points.
+    polylines: each (n >= 2, 2) in mm with distinct neighbours; radius_mm: of the tube that they are to be the smoothest
+    in; they then leave half of what is between it and the tolerance to others. Work is linear in the number of points.
     """
     line = Polylines.of(polylines)
     start = rounded(line, ROUNDED_SHARE * tolerance_mm)
-    radius = np.full(len(polylines), _TUBE_SHARE * tolerance_mm) if radius_mm is None else radius_mm
-    radius = np.repeat(radius, start.n_cells)
+    radius_mm = _TUBE_SHARE * tolerance_mm if radius_mm is None else radius_mm
+    limit_mm = min(radius_mm + _SURPLUS * (tolerance_mm - radius_mm), _MOST * tolerance_mm)
+    radius = np.full(int(start.n_cells.sum()), radius_mm)
     paths = SplinePaths(start.n_cells, start.controls.copy())
-    deviation = np.zeros(len(polylines))
-    open_ = np.ones(len(polylines), dtype=bool)
+    deviation = np.full(len(polylines), np.inf)
     for _ in range(_ROUNDS):
+        open_ = deviation > limit_mm
         cells, controls = np.repeat(open_, start.n_cells), np.repeat(open_, start.n_cells + DEGREE)
         some, along = paths.subset(open_), line.subset(open_)
         paths.controls[controls, :2] = smoothest(some, Tube.around(along, some, radius[cells]))
-        of_cells = _deviations(along, paths.subset(open_), tolerance_mm)
+        of_cells = _deviations(along, paths.subset(open_), limit_mm)
         deviation[open_] = np.maximum.reduceat(of_cells, starts_of(some.n_cells)[:-1])
-        radius[cells] *= _narrower(of_cells, tolerance_mm)
-        open_ = deviation > tolerance_mm
-        if not open_.any():
+        radius[cells] *= _narrower(of_cells, limit_mm)
+        if not (deviation > limit_mm).any():
             break
     else:
-        _approach(line, paths, start, deviation, open_, tolerance_mm)
+        _approach(line, paths, start, deviation, limit_mm)
     return StrokePaths(
         line,
         PenPaths(paths.n_cells, paths.controls[:, :2].copy()),
@@ -114,26 +115,18 @@ def _narrower(of_cells: FloatArray, tolerance_mm: float) -> FloatArray:
     return np.lib.stride_tricks.sliding_window_view(around, 2 * _BESIDE + 1).min(axis=1)
 
 
-def _approach(
-    line: Polylines,
-    paths: SplinePaths,
-    start: SplinePaths,
-    deviation: FloatArray,
-    open_: BoolArray,
-    tolerance_mm: float,
-) -> None:
-    """Move the open paths (n_paths,) towards where they started, by as little as keeps them within the tolerance."""
+def _approach(line: Polylines, paths: SplinePaths, start: SplinePaths, deviation: FloatArray, limit_mm: float) -> None:
+    """Move paths that stray too far towards where they started, by as little as brings them within the limit, and all
+    the way if nothing does."""
     goal = paths.controls.copy()
-    share = 1.0
-    for round_ in range(_HALVINGS + 1):
-        share = 0.5 * share if round_ < _HALVINGS else 0.0
+    for share in (*0.5 ** np.arange(1, _HALVINGS), 0.0):
+        open_ = deviation > limit_mm
         controls = np.repeat(open_, start.n_cells + DEGREE)
         paths.controls[controls] = start.controls[controls] + share * (goal - start.controls)[controls]
         some = paths.subset(open_)
-        of_cells = _deviations(line.subset(open_), some, tolerance_mm)
+        of_cells = _deviations(line.subset(open_), some, limit_mm)
         deviation[open_] = np.maximum.reduceat(of_cells, starts_of(some.n_cells)[:-1])
-        open_ = deviation > tolerance_mm
-        if not open_.any():
+        if not (deviation > limit_mm).any():
             break
 
 
@@ -142,12 +135,6 @@ def _deviations(line: Polylines, paths: SplinePaths, exact_above_mm: float) -> F
     ends = np.cumsum(paths.n_cells) - 1
     curve = paths.positions(np.append(_SAMPLED, 1.0))
     points = np.insert(curve[:, :-1].reshape(-1, 3), _PER_CELL * (ends + 1), curve[ends, -1], axis=0)
-    of_point = lines_of_cells(paths.n_cells, _PER_CELL, 1)
-    extra = line.distances(points[:, :2], points[:, 2], of_point, exact_above_mm)
-    missing, place = line.missed(points[:, :2], points[:, 2], of_point)
-    np.maximum.at(extra, place, missing)
-    last = np.zeros(len(points), dtype=bool)
-    last[_PER_CELL * (ends + 1) + np.arange(len(ends))] = True
-    extra[np.flatnonzero(last) - 1] = np.maximum(extra[np.flatnonzero(last) - 1], extra[last])
-    of_cells: FloatArray = extra[~last].reshape(-1, _PER_CELL).max(axis=1)
-    return of_cells
+    of_path = lines_of_parts(paths.n_cells, _PER_CELL)
+    deviations = line.deviations(points[:, :2], points[:, 2], of_path, exact_above_mm)
+    return largest_of_parts(deviations, paths.n_cells, _PER_CELL)

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import BoolArray, FloatArray, IntArray
-from planner.ragged import starts_of, within
+from planner.ragged import starts_of
 
 _GAP_MM = 1e4
 _STEPS = 3
 """Steps along a polyline towards the point that is nearest: each goes as far as its segment says."""
 _LONGEST_STEP_MM = 0.5
-_BESIDE = 6
-"""Pieces of a curve, before and behind the place where it should pass a vertex, that are looked at."""
+_STRIDES = (32, 16, 8, 4, 2, 1)
+"""Points of a curve that are gone along it at a time in search of the one that is nearest to a vertex."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -96,36 +96,43 @@ class Polylines:
             best, least = np.where(distance < least, arc, best), np.minimum(distance, least)
         return best, least
 
-    def distances(
-        self, points_mm: FloatArray, near_mm: FloatArray, line: IntArray, exact_above_mm: float
+    def deviations(
+        self, curves_mm: FloatArray, near_mm: FloatArray, line: IntArray, exact_above_mm: float
     ) -> FloatArray:
-        """(n,) the same distances; where they are larger than that, of all points not much further along."""
-        foot_mm, distance = self.feet(points_mm, near_mm, line)
-        for index in np.flatnonzero(distance > exact_above_mm).tolist():
-            reach = 2.0 * float(distance[index])
-            low, high = np.searchsorted(self.arc_mm, foot_mm[index] + np.array([-reach, reach]))
-            low = max(int(low) - 1, int(self.first[line[index]]))
-            high = min(int(high) + 1, int(self.last[line[index]]) + 1)
-            piece = self.points_mm[low:high]
-            distance[index] = min(distance[index], to_segments(points_mm[index], piece[:-1], piece[1:]).min())
-        return distance
+        """(n,) how far curves are from the polylines that they follow at each of their points, and each point of the
+        polylines from the curves, told where they pass it; never too small, and exact above a distance.
 
-    def missed(self, curve_mm: FloatArray, arc_mm: FloatArray, line: IntArray) -> tuple[FloatArray, IntArray]:
-        """How far each point of the polylines is from curves that follow them, (n,), and the curve point before which
-        they pass it.
-
-        curve_mm: (m, 2) points of the curves, one curve after the other; arc_mm: (m,) about where these are on the
-        axis; line: (m,) the polyline that each follows.
+        curves_mm: (n, 2) curve after curve; near_mm: (n,) about where these points belong on the axis; line: (n,) the
+        polyline that each follows.
         """
-        place = np.searchsorted(np.maximum.accumulate(arc_mm), self.arc_mm)
-        own = np.repeat(np.arange(len(self.first)), self.last - self.first + 1)
-        low, high = np.searchsorted(line, own), np.searchsorted(line, own, side="right") - 1
-        least = np.full(len(own), np.inf)
-        for beside in range(-_BESIDE, _BESIDE):
-            begin = np.clip(place + beside, low, high)
-            end = np.minimum(begin + 1, high)
-            np.minimum(least, to_segments(self.points_mm, curve_mm[begin], curve_mm[end]), out=least)
-        return least, np.clip(place, low, high)
+        foot_mm, deviation = self.feet(curves_mm, near_mm, line)
+        for index in np.flatnonzero(deviation > exact_above_mm).tolist():
+            reach = 2.0 * float(deviation[index])
+            low, high = np.searchsorted(self.arc_mm, foot_mm[index] + np.array([-reach, reach])).tolist()
+            low, high = max(low - 1, int(self.first[line[index]])), min(high + 1, int(self.last[line[index]]) + 1)
+            piece = self.points_mm[low:high]
+            deviation[index] = min(deviation[index], to_segments(curves_mm[index], piece[:-1], piece[1:]).min())
+        place, missed = self._passed(curves_mm, foot_mm, line)
+        np.maximum.at(deviation, place, missed)
+        return deviation
+
+    def _passed(self, curves_mm: FloatArray, foot_mm: FloatArray, line: IntArray) -> tuple[IntArray, FloatArray]:
+        """The point of a curve nearest to each point of the polylines, and how far curve and point are apart."""
+        counts = self.last - self.first + 1
+        first = np.searchsorted(line, np.arange(len(counts)))
+        low = np.repeat(first, counts)
+        high = np.repeat(np.append(first[1:], len(line)) - 1, counts)
+        place = np.clip(np.searchsorted(np.maximum.accumulate(foot_mm), self.arc_mm), low, high)
+        least = np.hypot(*(curves_mm[place] - self.points_mm).T)
+        for stride in _STRIDES:
+            middle = place
+            for step in (-stride, stride):
+                tried = np.clip(middle + step, low, high)
+                gap = np.hypot(*(curves_mm[tried] - self.points_mm).T)
+                place, least = np.where(gap < least, tried, place), np.minimum(gap, least)
+        for begin, end in ((np.maximum(place - 1, low), place), (place, np.minimum(place + 1, high))):
+            np.minimum(least, to_segments(self.points_mm, curves_mm[begin], curves_mm[end]), out=least)
+        return place, least
 
 
 def to_segments(points_mm: FloatArray, begins_mm: FloatArray, ends_mm: FloatArray) -> FloatArray:
@@ -137,7 +144,15 @@ def to_segments(points_mm: FloatArray, begins_mm: FloatArray, ends_mm: FloatArra
     return distance
 
 
-def lines_of_cells(n_cells: IntArray, per_cell: int, ends: int) -> IntArray:
-    """(total,) the path of each point, where paths have so many points a cell and so many more at their end."""
-    counts = per_cell * n_cells + ends
-    return np.cumsum(within(counts) == 0) - 1
+def lines_of_parts(n_parts: IntArray, per_part: int) -> IntArray:
+    """(total,) the curve that each point is of, where curves have so many points a part and one more at their end."""
+    return np.repeat(np.arange(len(n_parts)), per_part * n_parts + 1)
+
+
+def largest_of_parts(values: FloatArray, n_parts: IntArray, per_part: int) -> FloatArray:
+    """(total parts,) the largest of values at such points, of the part that they are in."""
+    ends = per_part * np.cumsum(n_parts) + np.arange(len(n_parts))
+    inside = values.copy()
+    inside[ends - 1] = np.maximum(values[ends - 1], values[ends])
+    largest: FloatArray = np.delete(inside, ends).reshape(-1, per_part).max(axis=1)
+    return largest

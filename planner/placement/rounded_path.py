@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arrays import FloatArray
+from planner.arrays import FloatArray, IntArray
 from planner.placement.polylines import Polylines
 from planner.ragged import starts_of, within
 from planner.spline_paths import DEGREE, SplinePaths
@@ -177,9 +177,7 @@ def _ramped(sigma: FloatArray, n_cells: IntArray) -> FloatArray:
     return ramped
 
 
-def _deviation(
-    line: Polylines, paths: SplinePaths, spacing: _Spacing
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _deviation(line: Polylines, paths: SplinePaths, spacing: _Spacing) -> tuple[FloatArray, FloatArray, FloatArray]:
     """How far each sampled curve point is from the polyline point of the same arc length, and each vertex from
     the curve there: upper bounds of the distance both ways. Also where on the axis of arc length that is,
     and the spacing used there."""
