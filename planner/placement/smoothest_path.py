@@ -18,9 +18,15 @@ from planner.spline import weights
 from planner.spline_paths import DEGREE, SplinePaths
 
 _LOCAL = 2 * (DEGREE + 1)
-_ITERATIONS = 7
-"""The last few only polish: the time that a path takes has long stopped to fall."""
-_CENTRING, _BOUNDARY = 0.3, 0.95
+_ITERATIONS = 8
+"""Hardly anything is to be gained by more."""
+_START = 100.0
+"""The barrier at the start, in shares of the price. With less of it slacks run dry far from the optimum, where facets
+by the thousand each ask for a little, and steps stay short."""
+_CENTRING, _MOST_CENTRING = 0.1, 0.9
+"""Factors of the barrier with every step: the nearer to the second, the shorter the step before."""
+_BOUNDARY = 0.95
+"""Share of the way to the nearest bound that a step may go."""
 _LEAST_SLACK = 0.1
 """Share of a bound that its slack begins with where the bound is broken."""
 _SHIFT = 1e-9
@@ -131,14 +137,15 @@ class _Iterate:
         cost = 0.5 * np.add.reduceat((self.gradient * local).sum(axis=1), problem.first_cell)
         for cells, from_unknowns in problem.ends:
             self.gradient[cells] = self.gradient[cells] @ from_unknowns
-        mu = (np.maximum(cost, 1e-12) / problem.n_bounds)[problem.path_of_cell]
+        self.step = np.ones(len(problem.n_bounds))
+        mu = (_START * np.maximum(cost, 1e-12) / problem.n_bounds)[problem.path_of_cell]
         self.multiplier = mu[:, None] / self.slack
 
     def improved(self) -> bool:
         """Go one step of Newton's method, or say that there is no going on."""
         problem, slack, multiplier = self.problem, self.slack, self.multiplier
         gap = np.add.reduceat((slack * multiplier).sum(axis=(0, 2)), problem.first_cell) / problem.n_bounds
-        mu = (_CENTRING * gap)[problem.path_of_cell][:, None]
+        mu = (np.clip(1.0 - self.step, _CENTRING, _MOST_CENTRING) * gap)[problem.path_of_cell][:, None]
         stiffness = multiplier / slack
         push = mu / slack - stiffness * self.lacking
         turned = problem.rows.transpose(0, 2, 1)
@@ -155,6 +162,7 @@ class _Iterate:
         primal = problem.step((slack[0], d_slack[0]), (slack[1], d_slack[1]))
         dual = problem.step((multiplier[0], d_multiplier[0]), (multiplier[1], d_multiplier[1]))
         share = primal[problem.path_of_cell][:, None]
+        self.step = np.minimum(primal, dual)
         self.controls += primal[problem.path_of_control][:, None] * problem.of_controls(unknowns)
         self.gradient = self.gradient + share * (problem.price @ local[..., None])[..., 0]
         self.slack = slack + share * d_slack

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from planner.arrays import FloatArray
 from planner.placement import pieces
-from planner.placement.pen_path import expected_cells, smooth_paths
+from planner.placement.pen_path import ROUNDED_SHARE, smooth_paths
+from planner.placement.rounded_path import expected_cells
 from planner.placement.pieces import in_pieces
 
 TOLERANCE_MM = 0.025
