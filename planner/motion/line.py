@@ -42,13 +42,7 @@ def timed_lines(
 ) -> list[TimedStroke | InfeasiblePath]:
     """Joint samples of each stroke (n > 1, 2), arm mm, or why it cannot be drawn."""
     kinematics, tolerance_mm = model.kinematics, settings.tolerance_mm
-    room_mm = STROKE_SHARE * tolerance_mm
-    radius_mm = tube_radius(kinematics, _some_configurations(references, strokes), room_mm, settings.rate_hz)
-    paths = smoothed(strokes, room_mm, radius_mm)
-    splines, infeasible_paths = joint_paths(kinematics, references, paths.pen)
-    if not infeasible_paths and strays_mm(kinematics, paths.pen, splines).max() > SPLINE_SHARE * tolerance_mm:
-        paths = paths.subdivided()
-        splines, infeasible_paths = joint_paths(kinematics, references, paths.pen)
+    paths, splines, infeasible_paths = followed(model, references, settings, strokes)
     if infeasible_paths:
         blocked = {infeasible_path.path: infeasible_path for infeasible_path in infeasible_paths}
         feasible = [stroke for index, stroke in enumerate(strokes) if index not in blocked]
@@ -62,7 +56,7 @@ def timed_lines(
     dwell = round(settings.dwell_s * settings.rate_hz)
     timed: list[TimedStroke | InfeasiblePath] = []
     for index, (stroke, motion, is_smooth) in enumerate(
-        zip(strokes, motions, (paths.deviation_mm <= room_mm).tolist(), strict=True)
+        zip(strokes, motions, (paths.deviation_mm <= STROKE_SHARE * tolerance_mm).tolist(), strict=True)
     ):
         independent = kinematics.independent_of(motion.joints)
         timed.append(
@@ -77,6 +71,21 @@ def timed_lines(
             )
         )
     return timed
+
+
+def followed(
+    model: ArmModel, references: References, settings: PlanSettings, strokes: Sequence[FloatArray]
+) -> tuple[StrokePaths, JointPaths, list[InfeasiblePath]]:
+    """Pen and joint paths of strokes before they are timed, and those that cannot be followed."""
+    kinematics = model.kinematics
+    room_mm = STROKE_SHARE * settings.tolerance_mm
+    radius_mm = tube_radius(kinematics, _some_configurations(references, strokes), room_mm, settings.rate_hz)
+    paths = smoothed(strokes, room_mm, radius_mm)
+    splines, infeasible_paths = joint_paths(kinematics, references, paths.pen)
+    if not infeasible_paths and strays_mm(kinematics, paths.pen, splines).max() > SPLINE_SHARE * settings.tolerance_mm:
+        paths = paths.subdivided()
+        splines, infeasible_paths = joint_paths(kinematics, references, paths.pen)
+    return paths, splines, infeasible_paths
 
 
 def _some_configurations(references: References, strokes: Sequence[FloatArray]) -> FloatArray:
