@@ -73,8 +73,8 @@ def joint_optimum(context: PlanContext, stroke: FloatArray, planned: TimedStroke
     joints_of = _configurations(context, middle, half)
     state = casadi.SX.sym("state", 8)  # position, velocity, acceleration, jerk
     t = casadi.SX.sym("t")
-    p, v, a, u = (state[2 * k : 2 * k + 2] for k in range(4))
-    moved = joints_of((p + v * t + a * t**2 / 2 + u * t**3 / 6 - middle) / half)
+    x, dx, d2x, d3x = (state[2 * k : 2 * k + 2] for k in range(4))
+    moved = joints_of((x + dx * t + d2x * t**2 / 2 + d3x * t**3 / 6 - middle) / half)
     rates, form = [], moved
     for limit in (limits.velocity, limits.acceleration, limits.jerk):
         form = casadi.jacobian(form, t)

@@ -107,7 +107,8 @@ def _with_samples(samples_mm: FloatArray, between_mm: FloatArray, n_steps: IntAr
     last = starts_of(n_steps + 1)[1:] - 1
     begins = np.delete(samples_mm, last, axis=0)
     curve = np.concatenate((begins[:, None], between_mm), axis=1).reshape(-1, 2)
-    return np.insert(curve, _PER_STEP * np.cumsum(n_steps), samples_mm[last], axis=0)
+    with_last: FloatArray = np.insert(curve, _PER_STEP * np.cumsum(n_steps), samples_mm[last], axis=0)
+    return with_last
 
 
 def _deviation(
@@ -115,7 +116,8 @@ def _deviation(
 ) -> FloatArray:
     """(total steps,) how far curves, of _PER_STEP points a step, are from their polylines in each step, both ways."""
     deviations = line.deviations(curve_mm, arc_mm, lines_of_parts(n_steps, _PER_STEP), room_mm)
-    return largest_of_parts(deviations, n_steps, _PER_STEP)
+    of_steps: FloatArray = largest_of_parts(deviations, n_steps, _PER_STEP)
+    return of_steps
 
 
 def travel_move_excess(

@@ -112,7 +112,8 @@ def _narrower(of_cells: FloatArray, tolerance_mm: float) -> FloatArray:
     """(cells,) factors for the radius of the tube: below 1 around cells that stray by more than the tolerance."""
     factor = np.where(of_cells > tolerance_mm, _TIGHTER * tolerance_mm / np.maximum(of_cells, 1e-12), 1.0)
     around = np.pad(np.maximum(factor, _TIGHTEST), _BESIDE, constant_values=1.0)
-    return np.lib.stride_tricks.sliding_window_view(around, 2 * _BESIDE + 1).min(axis=1)
+    factors: FloatArray = np.lib.stride_tricks.sliding_window_view(around, 2 * _BESIDE + 1).min(axis=1)
+    return factors
 
 
 def _approach(line: Polylines, paths: SplinePaths, start: SplinePaths, deviation: FloatArray, limit_mm: float) -> None:

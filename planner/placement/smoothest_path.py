@@ -82,14 +82,16 @@ class _Problem:
     def _ends(self, n_cells: IntArray) -> list[tuple[IntArray, FloatArray]]:
         """The first four cells of all paths, one after the other, and the last four: how (12, 12) their control points
         follow from the unknowns."""
-        found = []
+        found: list[tuple[IntArray, FloatArray]] = []
         for k in range(DEGREE):
             at_start = np.zeros((DEGREE + 1, DEGREE + 1))
             for i in range(DEGREE + 1):
                 ramp = k + i < DEGREE
                 at_start[i, DEGREE - 1 - k if ramp else i] = _RAMP[k + i] if ramp else 1.0
-            found.append((self.first_cell + k, np.kron(at_start, np.eye(2))))
-            found.append((self.first_cell + n_cells - 1 - k, np.kron(at_start[::-1, ::-1], np.eye(2))))
+            from_unknowns: FloatArray = np.kron(at_start, np.eye(2)).astype(np.float64)
+            mirrored: FloatArray = np.kron(at_start[::-1, ::-1], np.eye(2)).astype(np.float64)
+            found.append((self.first_cell + k, from_unknowns))
+            found.append((self.first_cell + n_cells - 1 - k, mirrored))
         return found
 
     def of_controls(self, unknowns: FloatArray) -> FloatArray:
@@ -103,7 +105,8 @@ class _Problem:
 
     def summed(self, per_cell: FloatArray) -> FloatArray:
         """(n_unknowns,) of (cells, 12)."""
-        return np.bincount(self.unknowns.ravel(), per_cell.ravel(), self.n_unknowns)
+        sums: FloatArray = np.bincount(self.unknowns.ravel(), per_cell.ravel(), self.n_unknowns).astype(np.float64)
+        return sums
 
     def band(self, per_cell: FloatArray) -> FloatArray:
         """(12, n_unknowns) the lower band of the sum of (cells, 12, 12)."""
