@@ -84,7 +84,7 @@ def stroke_excess(
         for way in (slice(0, _PER_STEP - 1), slice(_PER_STEP - 1, None))
     ]
     deviation = np.max([_deviation(paths.line, curve, arc_mm, n_steps, room_mm) for curve in curves], axis=0)
-    excess = deviation / room_mm
+    excess: FloatArray = deviation / room_mm
     over = excess > 1.0
     if over.any():
         at_rest = _deviation(paths.line, paths.pen.at(cells, fractions), arc_mm, n_steps, room_mm)
@@ -116,8 +116,7 @@ def _deviation(
 ) -> FloatArray:
     """(total steps,) how far curves, of _PER_STEP points a step, are from their polylines in each step, both ways."""
     deviations = line.deviations(curve_mm, arc_mm, lines_of_parts(n_steps, _PER_STEP), room_mm)
-    of_steps: FloatArray = largest_of_parts(deviations, n_steps, _PER_STEP)
-    return of_steps
+    return largest_of_parts(deviations, n_steps, _PER_STEP)
 
 
 def travel_move_excess(

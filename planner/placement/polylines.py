@@ -15,8 +15,8 @@ _STEPS = 3
 """Steps along a polyline towards the point that is nearest: each goes as far as its segment says."""
 _LONGEST_STEP_MM = 0.5
 _STRIDES = (1, 2, 4, 8, 16, 32, 16, 8, 4, 2, 1)
-"""Points of a curve that are gone along it at a time in search of the one nearest to a vertex: short ones first, so that
-none leads to another stretch of the curve while this one is nearer."""
+"""How many points of a curve are gone at a time in search of the one nearest to a vertex: few first, so that none leads
+to another stretch of the curve while this one is nearer."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
