@@ -11,7 +11,7 @@ from planner.arrays import BoolArray, FloatArray
 from planner.placement.polylines import Polylines, largest_of_parts, lines_of_parts
 from planner.placement.rounded_path import rounded
 from planner.placement.smoothest_path import smoothest
-from planner.placement.tube import Tube
+from planner.placement.tube import Tube, local_controls
 from planner.ragged import starts_of
 from planner.spline_paths import DEGREE, SplinePaths
 
@@ -26,7 +26,8 @@ _ROUNDS = 3
 _TIGHTER, _TIGHTEST = 0.95, 0.6
 """A tube that a path strays from by more than the tolerance gets narrower around: what is aimed at, in tolerances, and
 the least factor."""
-_HALVINGS = 6
+_AROUND = (6, 6, 8, 8, 12, 12, 16)
+"""Control points around a place where a path is moved towards where it started, round after round."""
 _PER_CELL = 4
 _SAMPLED = np.arange(_PER_CELL) / _PER_CELL
 """Fractions of every cell at which a path is compared with its polyline."""
@@ -117,18 +118,37 @@ def _narrower(of_cells: FloatArray, tolerance_mm: float) -> FloatArray:
 
 
 def _approach(line: Polylines, paths: SplinePaths, start: SplinePaths, deviation: FloatArray, limit_mm: float) -> None:
-    """Move paths that stray too far towards where they started, by as little as brings them within the limit, and all
-    the way if nothing does."""
-    goal = paths.controls.copy()
-    for share in (*0.5 ** np.arange(1, _HALVINGS), 0.0):
+    """Move paths that stray too far towards where they started: half way around where they do so, further around with
+    every round, and whole paths all the way if nothing else brings them within the limit."""
+    gone = paths.controls - start.controls
+    for around in (*_AROUND, None):
         open_ = deviation > limit_mm
         controls = np.repeat(open_, start.n_cells + DEGREE)
-        paths.controls[controls] = start.controls[controls] + share * (goal - start.controls)[controls]
-        some = paths.subset(open_)
-        of_cells = _deviations(line.subset(open_), some, limit_mm)
+        some, along = paths.subset(open_), line.subset(open_)
+        gone[controls] *= (
+            0.0 if around is None else _halved(some, _deviations(along, some, limit_mm) > limit_mm, around)
+        )
+        paths.controls[controls] = start.controls[controls] + gone[controls]
+        of_cells = _deviations(along, paths.subset(open_), limit_mm)
         deviation[open_] = np.maximum.reduceat(of_cells, starts_of(some.n_cells)[:-1])
         if not (deviation > limit_mm).any():
             break
+
+
+def _halved(paths: SplinePaths, cells: BoolArray, around: int) -> FloatArray:
+    """(n_controls, 1) factors for control points: a half at those of the cells of the mask, from there rising to 1 over
+    so many others of the same path; one factor for the five at each end, which belong together."""
+    count = paths.n_cells + DEGREE
+    place = np.arange(len(paths.controls)) + around * np.repeat(np.arange(len(count)), count)
+    touched = np.zeros(int(place[-1]) + 1)
+    touched[place[local_controls(paths)[cells].ravel()]] = 1.0
+    distance = np.abs(np.arange(-around, around + 1)) / (around + 1)
+    near = np.convolve(touched, 2.0 * np.minimum(1.0 - distance, 0.5))[around:][place]
+    factors: FloatArray = 1.0 - 0.5 * np.minimum(near, 1.0)
+    starts = starts_of(count)
+    for ends in (starts[:-1, None] + np.arange(DEGREE), starts[1:, None] - 1 - np.arange(DEGREE)):
+        factors[ends] = factors[ends].min(axis=1, keepdims=True)
+    return factors[:, None]
 
 
 def _deviations(line: Polylines, paths: SplinePaths, exact_above_mm: float) -> FloatArray:

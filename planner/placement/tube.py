@@ -21,7 +21,7 @@ _FRACTIONS = np.array([0.0, 0.5])
 _NO_TURN, _SHARP = 1e-3, 0.1
 """Turns (2 sin of half the angle) from which on a vertex is bounded, and no point of the path may slide past it."""
 _SLIDE_CELLS = 0.3
-_LEAST_SLIDE, _VERTEX_SLIDE = 0.2, 0.3
+_LEAST_SLIDE, _VERTEX_SLIDE = 0.2, 0.2
 """How far points may slide along the polyline: in lengths of their cell, at least and at a hairpin in radii."""
 
 
