@@ -30,10 +30,10 @@ from planner.timing.timing_problem import FRACTIONS
 TIMING_SUBDIVISIONS = 1
 """How often the cells of a path are cut in two before it is timed: jerk switches at cell ends only, and cells as
 long as the corners that they go round are too coarse for that."""
-_FEW = 4
 _CHANCE = 1.06
 """How much further chords may cut than is allowed, where caps foresee it: few have their middle where they would cut
 most. Those that have are found, and slowed, afterwards."""
+_FEW = 4
 """Configurations by which the arm's quickness is judged."""
 
 

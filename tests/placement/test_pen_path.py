@@ -125,7 +125,7 @@ def test_any_polyline_is_followed(line: FloatArray) -> None:
 @example(SHAPES["hair"])
 @example(SHAPES["reversal"])
 def test_paths_begin_and_end_fit_for_rest(line: FloatArray) -> None:
-    """The first and second derivatives by sigma are zero at both ends, the third is not, and points the right way, where
+    """The first and second derivatives by sigma are zero at both ends, the third is not, and points the right way where
     the tolerance leaves only one: a stroke within it may be drawn as hardly more than a dot."""
     paths = smooth_paths([line], TOLERANCE_MM)
     curve = curve_of(paths, 0)
