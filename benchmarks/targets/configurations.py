@@ -119,17 +119,17 @@ def narrow(arm: Arm) -> Arm:
 
 def figures(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> Figures:
     """Of the strokes that the method draws; of all, whatever limit they break, for DLS, which knows none."""
-    pen, joint_splines, infeasible_paths = followed(arm, strokes, settings)
+    paths, joint_splines, infeasible_paths = followed(arm, strokes, settings)
     blocked = {infeasible_path.path for infeasible_path in infeasible_paths}
     joints = joint_splines.positions(_FRACTIONS)
-    weight = np.hypot(*np.moveaxis(pen.positions(_FRACTIONS, 1), 2, 0))
+    weight = np.hypot(*np.moveaxis(paths.pen.positions(_FRACTIONS, 1), 2, 0))
     drawn = np.array([settings.method is Method.DLS or path not in blocked for path in range(len(strokes))])
     of_path = np.repeat(np.arange(len(strokes)), joint_splines.n_cells)
     slope = joint_splines.positions(_FRACTIONS, 1) / np.maximum(weight, 1e-12)[..., None]
     weight[~drawn[of_path]] = 0.0
     jacobian = frame_jacobian(arm, joints.reshape(-1, arm.n_joints))[:, :3].reshape(*weight.shape, 3, arm.n_joints)
     counted = jacobian * np.array([1.0, 1.0, HEIGHT])[:, None]
-    reach_mm = max(float(np.hypot(*np.moveaxis(pen.positions(_FRACTIONS), 2, 0)).max()), 1.0)
+    reach_mm = max(float(np.hypot(*np.moveaxis(paths.pen.positions(_FRACTIONS), 2, 0)).max()), 1.0)
     at_rest = AT_REST / reach_mm * arm.per_file_unit / np.radians(1)
     square = ((counted**2).sum(axis=2) * (slope**2 + at_rest**2)).sum(axis=2)
     outside = (np.maximum(arm.minimum - joints, joints - arm.maximum) > 1e-9).any(axis=2)

@@ -15,26 +15,22 @@ import numpy as np
 from planner import pipeline
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray, IntArray
-from planner.drawing.order import order_strokes
-from planner.drawing.svg import read_drawing
 from planner.execution import work_chunks
 from planner.execution.context import PlanContext
 from planner.inverse_kinematics.joint_path import JointPaths
 from planner.inverse_kinematics.references import references_of
-from planner.inverse_kinematics.stroke_configurations import InfeasiblePath, joint_paths
+from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
 from planner.kinematics.chain import Kinematics
 from planner.kinematics.limits import Limits
-from planner.motion.line import TIMING_SUBDIVISIONS, pen_speed_limit
+from planner.motion import line
 from planner.motion.stroke_motion import StrokeMotions, motions
-from planner.motion.tolerance import SMOOTH_SHARE
-from planner.placement.pen_path import PenPaths, smooth_paths
+from planner.placement.pen_path import StrokePaths
 from planner.ragged import starts_of
 from planner.redundancy.arm_model import ArmModel
 from planner.settings import PlanSettings
 from planner.spline_paths import DEGREE
 from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
-from planner.workspace.canvas import canvas_of
 
 UNROUNDED_HZ = 1e4
 """A sample rate at which rounding up to whole periods is next to nothing, and minutes are no more samples than a plan
@@ -51,7 +47,7 @@ class TimedPaths:
     ends as well, not rounded to sample periods.
     """
 
-    pen: PenPaths
+    paths: StrokePaths
     joints: JointPaths
     cap: FloatArray
     limits: Limits
@@ -67,7 +63,7 @@ class TimedPaths:
 
     def within(self, limits: Limits) -> TimedPaths:
         """The same paths timed within other limits."""
-        return _timed(self.pen, self.joints, self.cap, limits)
+        return _timed(self.paths, self.joints, self.cap, limits)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -103,12 +99,7 @@ def drawings(folder: Path) -> list[Path]:
 
 def placed_strokes(drawing_file: Path, arm: Arm, settings: PlanSettings) -> list[FloatArray]:
     """Polylines (n, 2) in arm mm in drawing order; taps have one point."""
-    drawing = read_drawing(drawing_file)
-    model = ArmModel(arm, cache=False)
-    canvas = canvas_of(model, settings.canvas, arm.pen.lift_mm)
-    svg_to_arm, _, _, _ = pipeline._placed(drawing, canvas, settings)
-    strokes, _, _ = pipeline._strokes(drawing, svg_to_arm, model, settings)
-    return order_strokes(strokes, canvas.to_arm_mm(np.zeros(2)))
+    return pipeline.placed_strokes(drawing_file, ArmModel(arm, cache=False), settings)[0]
 
 
 def lines(strokes: Sequence[FloatArray], longer_than_mm: float = 0.0) -> list[FloatArray]:
@@ -128,26 +119,24 @@ def sharpest_turn_deg(stroke: FloatArray) -> float:
 
 def followed(
     arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
-) -> tuple[PenPaths, JointPaths, list[InfeasiblePath]]:
+) -> tuple[StrokePaths, JointPaths, list[InfeasiblePath]]:
     """Pen and joint paths of polylines, and those that cannot be followed, before timing."""
-    pen = smooth_paths(strokes, SMOOTH_SHARE * settings.tolerance_mm)
     model = ArmModel(arm, cache=False)
-    references = references_of(model, settings.method, settings.weights)
-    return pen, *joint_paths(model.kinematics, references, pen)
+    return line.followed(model, references_of(model, settings.method, settings.weights), settings, strokes)
 
 
 def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> TimedPaths:
     """The planner's timing of polylines, those that cannot be followed as well."""
-    pen, joints, _ = followed(arm, strokes, settings)
-    for _ in range(TIMING_SUBDIVISIONS):
-        pen, joints = pen.subdivided(), joints.subdivided()
+    paths, joints, _ = followed(arm, strokes, settings)
+    for _ in range(line.TIMING_SUBDIVISIONS):
+        paths, joints = paths.subdivided(), joints.subdivided()
     limits = Limits.of(arm)
-    return _timed(pen, joints, pen_speed_limit(Kinematics(arm), pen, joints, settings), limits)
+    return _timed(paths, joints, line.pen_speed_limit(Kinematics(arm), paths, joints, settings), limits)
 
 
-def _timed(pen: PenPaths, joints: JointPaths, cap: FloatArray, limits: Limits) -> TimedPaths:
+def _timed(paths: StrokePaths, joints: JointPaths, cap: FloatArray, limits: Limits) -> TimedPaths:
     motion = motions(joints, minimum_time(problem_of(joints, limits, cap)).rates, limits, UNROUNDED_HZ)
-    return TimedPaths(pen, joints, cap, limits, motion, motion.n_periods / UNROUNDED_HZ)
+    return TimedPaths(paths, joints, cap, limits, motion, motion.n_periods / UNROUNDED_HZ)
 
 
 def timed_in_chunks(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedPaths]:

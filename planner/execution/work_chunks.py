@@ -13,7 +13,8 @@ from planner.execution.context import PlanContext
 from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
 from planner.motion.stroke import samples_of_strokes
 from planner.motion.timed_stroke import Contact, TimedStroke
-from planner.motion.tolerance import SMOOTH_SHARE
+from planner.motion.tolerance import STROKE_SHARE
+from planner.placement.pen_path import ROUNDED_SHARE
 from planner.placement.pieces import Piece, in_pieces
 from planner.settings import Method
 from planner.travel.clear_moves import clear_travel_moves
@@ -50,7 +51,7 @@ def pieces_of(context: PlanContext, strokes: Sequence[FloatArray]) -> list[list[
     whole = settings.method in (Method.DLS, Method.NLP) or (
         settings.method is Method.PATH and len(context.model.branches(settings.weights)) > 1
     )
-    return list(in_pieces(strokes, SMOOTH_SHARE * settings.tolerance_mm, whole=whole))
+    return list(in_pieces(strokes, ROUNDED_SHARE * STROKE_SHARE * settings.tolerance_mm, whole=whole))
 
 
 def stroke_chunks(context: PlanContext, pieces: Sequence[Piece]) -> Iterator[StrokeChunk]:

@@ -15,17 +15,18 @@ import numpy as np
 from planner.arrays import FloatArray, IntArray
 from planner.kinematics.chain import Kinematics
 from planner.motion.stroke_motion import StrokeMotions
-from planner.motion.tolerance import ACROSS_SHARE, ASIDE_SHARE, DRIFT_SHARE, HEIGHT_SHARE
-from planner.placement.pen_path import PenPaths
+from planner.motion.tolerance import ACROSS_SHARE, DRIFT_SHARE, HEIGHT_SHARE, STROKE_SHARE
+from planner.placement.pen_path import StrokePaths
+from planner.placement.polylines import Polylines, largest_of_parts, lines_of_parts
 from planner.ragged import starts_of, within
 
-_WAY_PER_STEP = 6
-"""Points of the way itself to a step: fewer would cut the corners that samples are blamed for."""
 _PER_STEP = 4
 _FRACTIONS = np.arange(1, _PER_STEP) / _PER_STEP
 _ACROSS = 1 / (9 * np.sqrt(3))
 """Largest weight of the sample behind a contact on the near side of it: of u (1 - u) (2 - u) / 6, u in 0 to 1."""
 _STEPS_AT_ONCE = 4096
+_LEAST_ROOM = 0.02
+"""Share of the room that is taken to be left for chords, where the path takes nearly all: slowing ends somewhere."""
 
 
 def _lagrange(fractions: FloatArray) -> FloatArray:
@@ -61,37 +62,61 @@ def tips_between(kinematics: Kinematics, joints: Sequence[FloatArray]) -> tuple[
 
 
 def stroke_excess(
-    kinematics: Kinematics, paths: PenPaths, motion: StrokeMotions, samples: Sequence[FloatArray], tolerance_mm: float
+    kinematics: Kinematics,
+    paths: StrokePaths,
+    motion: StrokeMotions,
+    samples: Sequence[FloatArray],
+    tolerance_mm: float,
 ) -> FloatArray:
-    """(total steps,) by how much the tip strays from its path in each step of a stroke, 1 where it is just allowed.
+    """(total steps,) by how much the tip strays from its stroke in each step, or the stroke from the tip, 1 where it is
+    just allowed.
 
-    samples: those of the motion. How far it strays grows with the square of the speed, and so does this figure.
+    samples: those of the motion. How far the tip strays from the path grows with the square of the speed, and so does
+    this figure; the path itself may be off the stroke.
     """
     tips, n_steps = tips_between(kinematics, samples)
-    cells, fractions = motion.places(_WAY_PER_STEP)
-    way = paths.at(cells, fractions)
-    # The way from a step before to a step behind, held at the ends of each stroke.
-    last = np.repeat(_WAY_PER_STEP * n_steps, n_steps)
-    begin = np.repeat(starts_of(_WAY_PER_STEP * n_steps + 1)[:-1], n_steps)
-    offsets = np.arange(-_WAY_PER_STEP, 2 * _WAY_PER_STEP + 1)
-    excess = np.empty(len(tips))
-    place = within(n_steps) * _WAY_PER_STEP
-    for first in range(0, len(tips), _STEPS_AT_ONCE):
-        part = slice(first, first + _STEPS_AT_ONCE)
-        near = way[begin[part, None] + np.clip(place[part, None] + offsets, 0, last[part, None])]
-        own = near[:, _WAY_PER_STEP + 1 : 2 * _WAY_PER_STEP]
-        aside = np.maximum(_to_polyline(tips[part, :, :2], near), _to_polyline(own, near[:, ::_WAY_PER_STEP]))
-        height = np.abs(tips[part, :, 2]).max(axis=1)
-        excess[part] = np.maximum(aside / (ASIDE_SHARE * tolerance_mm), height / (HEIGHT_SHARE * tolerance_mm))
+    at_samples = kinematics.tip_mm(kinematics.independent_of(np.concatenate(samples)))[:, :2]
+    cells, fractions = motion.places(_PER_STEP)
+    arc_mm = paths.arcs.at(cells, fractions)[:, 0]
+    room_mm = STROKE_SHARE * tolerance_mm
+    curves = [
+        _with_samples(at_samples, tips[:, way, :2], n_steps)
+        for way in (slice(0, _PER_STEP - 1), slice(_PER_STEP - 1, None))
+    ]
+    deviation = np.max([_deviation(paths.line, curve, arc_mm, n_steps, room_mm) for curve in curves], axis=0)
+    excess: FloatArray = deviation / room_mm
+    over = excess > 1.0
+    if over.any():
+        at_rest = _deviation(paths.line, paths.pen.at(cells, fractions), arc_mm, n_steps, room_mm)
+        left_mm = np.maximum(room_mm - at_rest, _LEAST_ROOM * room_mm)
+        excess[over] = np.maximum((deviation - at_rest) / left_mm, 1.0 + 1e-6)[over]
+    excess = np.maximum(excess, np.abs(tips[..., 2]).max(axis=1) / (HEIGHT_SHARE * tolerance_mm))
     # The first step and the last grow with the cube of the speed.
-    ends = starts_of(_WAY_PER_STEP * n_steps + 1)
-    into = np.hypot(*(way[ends[:-1] + _WAY_PER_STEP] - way[ends[:-1]]).T)
-    out = np.hypot(*(way[ends[1:] - 1] - way[ends[1:] - 1 - _WAY_PER_STEP]).T)
+    ends = starts_of(n_steps + 1)
+    into = np.hypot(*(at_samples[ends[:-1] + 1] - at_samples[ends[:-1]]).T)
+    out = np.hypot(*(at_samples[ends[1:] - 1] - at_samples[ends[1:] - 2]).T)
     steps = starts_of(n_steps)
     for step, length in ((steps[:-1], into), (steps[1:] - 1, out)):
         across = np.cbrt(_ACROSS * length / (ACROSS_SHARE * tolerance_mm)) ** 2
         excess[step] = np.maximum(excess[step], across)
     return excess
+
+
+def _with_samples(samples_mm: FloatArray, between_mm: FloatArray, n_steps: IntArray) -> FloatArray:
+    """(total, 2) the points between samples (total steps, _PER_STEP - 1, 2) with these among them."""
+    last = starts_of(n_steps + 1)[1:] - 1
+    begins = np.delete(samples_mm, last, axis=0)
+    curve = np.concatenate((begins[:, None], between_mm), axis=1).reshape(-1, 2)
+    with_last: FloatArray = np.insert(curve, _PER_STEP * np.cumsum(n_steps), samples_mm[last], axis=0)
+    return with_last
+
+
+def _deviation(
+    line: Polylines, curve_mm: FloatArray, arc_mm: FloatArray, n_steps: IntArray, room_mm: float
+) -> FloatArray:
+    """(total steps,) how far curves, of _PER_STEP points a step, are from their polylines in each step, both ways."""
+    deviations = line.deviations(curve_mm, arc_mm, lines_of_parts(n_steps, _PER_STEP), room_mm)
+    return largest_of_parts(deviations, n_steps, _PER_STEP)
 
 
 def travel_move_excess(
@@ -127,13 +152,3 @@ def travel_move_excess(
         across = np.cbrt(_ACROSS * heights[list(on)].max() / (ACROSS_SHARE * tolerance_mm)) ** 2
         excess[move] = max(depth / (DRIFT_SHARE * tolerance_mm), float(across))
     return excess
-
-
-def _to_polyline(points: FloatArray, line: FloatArray) -> FloatArray:
-    """(n,) largest distance of points (n, k, 2) to the polylines (n, m, 2) of the same row."""
-    start, along = line[:, None, :-1], np.diff(line, axis=1)[:, None]
-    offset = points[:, :, None] - start
-    share = (offset * along).sum(axis=-1) / np.maximum((along * along).sum(axis=-1), 1e-18)
-    off = offset - np.clip(share, 0.0, 1.0)[..., None] * along
-    worst: FloatArray = np.sqrt((off * off).sum(axis=-1).min(axis=2).max(axis=1))
-    return worst

@@ -1,8 +1,9 @@
-"""Strokes timed so that between samples, too, the tip stays within the tolerance of its path.
+"""Strokes timed so that between samples, too, the tip stays within the tolerance of its stroke.
 
 Caps on the speed along a path (`rate_limit`, `chord_error_limit`) foresee what samples cut off where the pen is at
 speed. What is left is measured on the samples themselves: where it is too much, the speed around is capped and the
-stroke timed anew, further around with every round, so that in the end the whole of it is slower.
+stroke timed anew, further around with every round, so that in the end the whole of it is slower; where it is hardly too
+much, the whole of it is slower at once.
 """
 
 from __future__ import annotations
@@ -17,13 +18,15 @@ from planner.kinematics.chain import Kinematics
 from planner.kinematics.limits import Limits
 from planner.motion.between_samples import stroke_excess
 from planner.motion.stroke_motion import StrokeMotions, motions
-from planner.placement.pen_path import PenPaths
+from planner.placement.pen_path import StrokePaths
 from planner.ragged import starts_of, within
 from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
 _ROUNDS = 16
 _MARGIN = 0.97
+_SLIGHTLY = 1.2
+"""Where a stroke strays by no more, all of it is slowed: to time it anew would save less than that takes."""
 _SLOWEST = 0.5
 """Least factor that a round slows by: figures far above what is allowed follow no power of the speed."""
 
@@ -41,7 +44,7 @@ class Timed:
 def timed_within(
     kinematics: Kinematics,
     limits: Limits,
-    paths: PenPaths,
+    paths: StrokePaths,
     splines: JointPaths,
     rate_limit: FloatArray,
     tolerance_mm: float,
@@ -50,22 +53,55 @@ def timed_within(
     """The motion of each path: paths and splines with the same cells, rate_limit (total cells, n_fractions) as
     `TimingProblem.of` has it."""
     derivatives = (splines.positions(FRACTIONS, 1), splines.positions(FRACTIONS, 2), splines.positions(FRACTIONS, 3))
-    problem = TimingProblem.of(paths.n_cells, derivatives, limits, rate_limit)
+    problem = TimingProblem.of(splines.n_cells, derivatives, limits, rate_limit)
     timed: dict[int, Timed] = {}
-    left = np.arange(len(paths.n_cells))
+    left = np.arange(len(splines.n_cells))
     for around in 2 ** np.arange(_ROUNDS):
         timing = minimum_time(problem)
-        motion = motions(splines, timing.rates, limits, rate_hz)
-        samples = motion.samples()
-        excess = stroke_excess(kinematics, paths, motion, samples, tolerance_mm)
-        over = np.maximum.reduceat(excess, starts_of(motion.n_periods)[:-1]) > 1.0
+        tried = _tried(kinematics, limits, paths, splines, timing.rates, tolerance_mm, rate_hz)
+        samples, over = tried.samples, tried.worst > 1.0
+        slightly = over & (tried.worst <= _SLIGHTLY)
+        if slightly.any():
+            slower = np.repeat(_MARGIN / tried.worst, splines.n_cells)[:, None] * timing.rates
+            cells = np.repeat(slightly, splines.n_cells)
+            some = paths.subset(slightly), splines.subset(slightly)
+            slowed = _tried(kinematics, limits, *some, slower[cells], tolerance_mm, rate_hz)
+            for index, made, worst in zip(np.flatnonzero(slightly), slowed.samples, slowed.worst, strict=True):
+                if worst <= 1.0:
+                    samples[index], over[index] = made, False
         timed.update(zip(left.tolist(), map(Timed, samples, timing.converged.tolist(), (~over).tolist()), strict=True))
         if not over.any():
             break
-        cap = _slower_where(motion, excess, int(around))
+        cap = _slower_where(tried.motion, tried.excess, int(around))
         problem = replace(problem, rate_limit=np.minimum(problem.rate_limit, cap)).subset(over)
         paths, splines, left = paths.subset(over), splines.subset(over), left[over]
     return [timed[index] for index in sorted(timed)]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Tried:
+    """Motions of some strokes, their samples, and by how much the tip strays in each step, and at most in each
+    stroke."""
+
+    motion: StrokeMotions
+    samples: list[FloatArray]
+    excess: FloatArray
+    worst: FloatArray
+
+
+def _tried(
+    kinematics: Kinematics,
+    limits: Limits,
+    paths: StrokePaths,
+    splines: JointPaths,
+    rates: FloatArray,
+    tolerance_mm: float,
+    rate_hz: float,
+) -> _Tried:
+    motion = motions(splines, rates, limits, rate_hz)
+    samples = motion.samples()
+    excess = stroke_excess(kinematics, paths, motion, samples, tolerance_mm)
+    return _Tried(motion, samples, excess, np.maximum.reduceat(excess, starts_of(motion.n_periods)[:-1]))
 
 
 def _slower_where(motion: StrokeMotions, excess: FloatArray, around: int) -> FloatArray:

@@ -1,12 +1,4 @@
-"""From polylines to smooth pen paths: C4 curves within a tolerance that start and end fit for rest.
-
-Each path is a uniform quintic B-spline in sigma whose control points are points of the polyline, sharpened: moved away
-from the mean of their neighbours (as in a quasi-interpolant; de Boor, A Practical Guide to Splines, chapter XII). The
-curve passes corners inside and, a little before and behind them, outside; what it strays is proportional to the local
-spacing of control points, so the spacing is made fine where the polyline turns and coarse where it is straight.
-Near both ends the arc length grows with sigma cubed, as it grows with time cubed when a constant jerk
-starts a motion: sigma then moves at a finite rate even where the pen is at rest.
-"""
+"""From the polylines of strokes to pen paths: the smoothest curves within the tolerance, fit for rest at both ends."""
 
 from __future__ import annotations
 
@@ -15,32 +7,32 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arrays import BoolArray, FloatArray, IntArray
-from planner.ragged import starts_of, within
-from planner.spline import evaluate, evaluate_at, first_controls
+from planner.arrays import BoolArray, FloatArray
+from planner.placement.polylines import Polylines, largest_of_parts, lines_of_parts
+from planner.placement.rounded_path import rounded
+from planner.placement.smoothest_path import smoothest
+from planner.placement.tube import Tube, local_controls
+from planner.ragged import starts_of
 from planner.spline_paths import DEGREE, SplinePaths
 
-_LONGEST_CELL_MM = 0.8
-_GRADING = 0.6
-"""How fast the spacing of control points may grow, mm per mm of path."""
-_RAMP_CELLS = 6
-"""Cells over which sigma changes from cubic to proportional to arc length, at each end."""
-_FEWEST_CELLS = 16
-_SHARPENING = 0.3
-"""Share of the second difference that control points are moved by. 1/4 would reproduce cubics; a little more balances
-what corners are cut with what is overshot beside them, and lets the pen pass them quicker than either side alone."""
-_CORNER_GAIN = 0.25
-"""A lone corner of turning angle t strays by 0.21 sin(t / 2) of the spacing where a control point lies on it, by 0.36
-at worst: the spacing to begin with is for a corner between the two."""
-_SLOW, _FIRM = (0.93, 0.95), (0.8, 0.85)
-"""Share of the tolerance that a refined spacing aims at, and the largest factor that it takes: first little by little,
-as every corner that is finer than it need be costs speed, then so that rounds come to an end."""
-_SLOW_ROUNDS, _ROUNDS = 5, 30
-_SAMPLED = np.array([0.0, 0.25, 0.5, 0.75])
+ROUNDED_SHARE = 0.6
+"""Share of the tolerance within which corners are rounded first: that fixes how long the cells are."""
+_TUBE_SHARE = 0.85
+"""Share of it that a tube takes unless told otherwise: between the bounded points a path strays a little further."""
+_SURPLUS, _MOST = 0.5, 0.97
+"""How much of what a tube leaves of the tolerance a path may take between the bounded points, and how much of the
+tolerance at most: where it takes more, the tube is made narrower."""
+_ROUNDS = 3
+_TIGHTER, _TIGHTEST = 0.95, 0.6
+"""A tube that a path strays from by more than the tolerance gets narrower around: what is aimed at, in tolerances, and
+the least factor."""
+_AROUND = (6, 6, 8, 8, 12, 12, 16)
+"""Control points around a place where a path is moved towards where it started, round after round."""
+_PER_CELL = 4
+_SAMPLED = np.arange(_PER_CELL) / _PER_CELL
 """Fractions of every cell at which a path is compared with its polyline."""
-_GAP_MM = 1e4
-_FIRST_OFFSETS = np.array([-5.0, 0.5, 0.0, -0.5, 5.0])
-"""Control points of sigma cubed on a uniform quintic spline with a knot at zero (its blossom)."""
+_BESIDE = 2
+"""Cells on both sides of one with too wide a tube that have it too."""
 
 
 class PenPaths(SplinePaths):
@@ -49,200 +41,121 @@ class PenPaths(SplinePaths):
     __slots__ = ()
 
 
+class ArcPaths(SplinePaths):
+    """About where points of paths belong on the axis of arc length of their polylines: positions (1,) in mm."""
+
+    __slots__ = ()
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class StrokePaths:
+    """Pen paths, the polylines that they follow, and where along these they are.
+
+    deviation_mm: (n_paths,) how far path and polyline are from each other at most.
+    """
+
+    line: Polylines
+    pen: PenPaths
+    arcs: ArcPaths
+    deviation_mm: FloatArray
+
+    def subdivided(self) -> StrokePaths:
+        """The same paths with every cell cut in two."""
+        return StrokePaths(self.line, self.pen.subdivided(), self.arcs.subdivided(), self.deviation_mm)
+
+    def subset(self, chosen: BoolArray) -> StrokePaths:
+        """Only the paths of the mask (n_paths,)."""
+        return StrokePaths(
+            self.line.subset(chosen), self.pen.subset(chosen), self.arcs.subset(chosen), self.deviation_mm[chosen]
+        )
+
+
 def smooth_paths(polylines: Sequence[FloatArray], tolerance_mm: float) -> PenPaths:
     """Smooth paths as `smoothed` makes them."""
-    return smoothed(polylines, tolerance_mm)[0]
+    return smoothed(polylines, tolerance_mm).pen
 
 
-def smoothed(polylines: Sequence[FloatArray], tolerance_mm: float) -> tuple[PenPaths, BoolArray]:
-    """Smooth paths that stay within the tolerance of their polylines, and these of them; and which of them (n_paths,)
-    do so indeed: rounds of refinement come to an end.
+def smoothed(polylines: Sequence[FloatArray], tolerance_mm: float, radius_mm: float | None = None) -> StrokePaths:
+    """Smooth paths that stay within the tolerance of their polylines, and these of them, unless their deviation says
+    otherwise: rounds of refinement come to an end.
 
-    polylines: each (n >= 2, 2) in mm with distinct neighbours. Work is linear in the number of points.
+    polylines: each (n >= 2, 2) in mm with distinct neighbours; radius_mm: of the tube that they are to be the smoothest
+    in; they then leave half of what is between it and the tolerance to others. Work is linear in the number of points.
     """
-    line = _Polylines.of(polylines)
-    anchors_mm, spacings_mm = line.corner_spacings(tolerance_mm)
-    for count in range(_ROUNDS):
-        spacing = _Spacing.of(line, anchors_mm, spacings_mm)
-        paths, arcs_mm = _sampled(line, spacing)
-        cut_mm, at_mm, used_mm = _deviation(line, paths, arcs_mm, spacing)
-        worst = cut_mm > tolerance_mm
-        if not worst.any():
+    line = Polylines.of(polylines)
+    start = rounded(line, ROUNDED_SHARE * tolerance_mm)
+    radius_mm = _TUBE_SHARE * tolerance_mm if radius_mm is None else radius_mm
+    limit_mm = min(radius_mm + _SURPLUS * (tolerance_mm - radius_mm), _MOST * tolerance_mm)
+    radius = np.full(int(start.n_cells.sum()), radius_mm)
+    paths = SplinePaths(start.n_cells, start.controls.copy())
+    deviation = np.full(len(polylines), np.inf)
+    for _ in range(_ROUNDS):
+        open_ = deviation > limit_mm
+        cells, controls = np.repeat(open_, start.n_cells), np.repeat(open_, start.n_cells + DEGREE)
+        some, along = paths.subset(open_), line.subset(open_)
+        paths.controls[controls, :2] = smoothest(some, Tube.around(along, some, radius[cells]))
+        of_cells = _deviations(along, paths.subset(open_), limit_mm)
+        deviation[open_] = np.maximum.reduceat(of_cells, starts_of(some.n_cells)[:-1])
+        radius[cells] *= _narrower(of_cells, limit_mm)
+        if not (deviation > limit_mm).any():
             break
-        # A lone corner is cut in proportion to the spacing, a bend in proportion to its square.
-        share, most = _SLOW if count < _SLOW_ROUNDS else _FIRM
-        finer = used_mm[worst] * np.clip(share * tolerance_mm / cut_mm[worst], 0.25, most)
-        anchors_mm = np.concatenate((anchors_mm, at_mm[worst]))
-        spacings_mm = np.concatenate((spacings_mm, finer))
-    reached = np.ones(len(polylines), dtype=bool)
-    reached[np.searchsorted(line.begin_mm, at_mm[worst], side="right") - 1] = False
-    return paths, reached
+    else:
+        _approach(line, paths, start, deviation, limit_mm)
+    return StrokePaths(
+        line,
+        PenPaths(paths.n_cells, paths.controls[:, :2].copy()),
+        ArcPaths(paths.n_cells, paths.controls[:, 2:].copy()),
+        deviation,
+    )
 
 
-def expected_cells(polylines: Sequence[FloatArray], tolerance_mm: float) -> list[FloatArray]:
-    """(n,) for each polyline: about how many cells its smooth path has up to each of its points, as far as lone corners
-    tell."""
-    line = _Polylines.of(polylines)
-    spacing = _Spacing.of(line, *line.corner_spacings(tolerance_mm))
-    cells = np.interp(line.arc_mm, spacing.node_mm, spacing.cells)
-    return [along - along[0] for along in np.split(cells, line.first[1:])]
+def _narrower(of_cells: FloatArray, tolerance_mm: float) -> FloatArray:
+    """(cells,) factors for the radius of the tube: below 1 around cells that stray by more than the tolerance."""
+    factor = np.where(of_cells > tolerance_mm, _TIGHTER * tolerance_mm / np.maximum(of_cells, 1e-12), 1.0)
+    around = np.pad(np.maximum(factor, _TIGHTEST), _BESIDE, constant_values=1.0)
+    factors: FloatArray = np.lib.stride_tricks.sliding_window_view(around, 2 * _BESIDE + 1).min(axis=1)
+    return factors
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _Polylines:
-    """Polylines on one axis of arc length, with a gap between each and the next that keeps them apart."""
-
-    points_mm: FloatArray
-    arc_mm: FloatArray
-    first: IntArray
-    last: IntArray
-
-    @staticmethod
-    def of(polylines: Sequence[FloatArray]) -> _Polylines:
-        counts = np.array([len(points) for points in polylines])
-        points = np.concatenate(polylines)
-        starts = starts_of(counts)
-        steps = np.zeros(len(points))
-        steps[1:] = np.hypot(*np.diff(points, axis=0).T)
-        steps[starts[1:-1]] = _GAP_MM
-        return _Polylines(points, np.cumsum(steps), starts[:-1], starts[1:] - 1)
-
-    @property
-    def begin_mm(self) -> FloatArray:
-        return self.arc_mm[self.first]
-
-    @property
-    def end_mm(self) -> FloatArray:
-        return self.arc_mm[self.last]
-
-    def at(self, arc_mm: FloatArray) -> FloatArray:
-        """(..., 2) points at positions on the axis of arc length."""
-        return np.stack([np.interp(arc_mm, self.arc_mm, column) for column in self.points_mm.T], axis=-1)
-
-    def corner_spacings(self, tolerance_mm: float) -> tuple[FloatArray, FloatArray]:
-        """Positions of all vertices, and the spacing with which each is cut by the tolerance if alone."""
-        steps = np.diff(self.points_mm, axis=0)
-        steps /= np.maximum(np.hypot(*steps.T), 1e-300)[:, None]
-        chord = np.zeros(len(self.points_mm))  # 2 sin(turning angle / 2)
-        chord[1:-1] = np.hypot(*np.diff(steps, axis=0).T)
-        chord[self.first] = chord[self.last] = 0.0
-        spacing = np.minimum(0.95 * tolerance_mm / np.maximum(0.5 * _CORNER_GAIN * chord, 1e-9), _LONGEST_CELL_MM)
-        return self.arc_mm, spacing
+def _approach(line: Polylines, paths: SplinePaths, start: SplinePaths, deviation: FloatArray, limit_mm: float) -> None:
+    """Move paths that stray too far towards where they started: half way around where they do so, further around with
+    every round, and whole paths all the way if nothing else brings them within the limit."""
+    gone = paths.controls - start.controls
+    for around in (*_AROUND, None):
+        open_ = deviation > limit_mm
+        controls = np.repeat(open_, start.n_cells + DEGREE)
+        some, along = paths.subset(open_), line.subset(open_)
+        gone[controls] *= (
+            0.0 if around is None else _halved(some, _deviations(along, some, limit_mm) > limit_mm, around)
+        )
+        paths.controls[controls] = start.controls[controls] + gone[controls]
+        of_cells = _deviations(along, paths.subset(open_), limit_mm)
+        deviation[open_] = np.maximum.reduceat(of_cells, starts_of(some.n_cells)[:-1])
+        if not (deviation > limit_mm).any():
+            break
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class _Spacing:
-    """Spacing of control points as a piecewise linear function of arc length, and the cells it makes.
-
-    node_mm, spacing_mm: the function; cells: its cumulated number of cells, the integral of 1 / spacing.
-    """
-
-    node_mm: FloatArray
-    spacing_mm: FloatArray
-    cells: FloatArray
-    begin: FloatArray
-    total: FloatArray
-
-    @staticmethod
-    def of(line: _Polylines, anchors_mm: FloatArray, spacings_mm: FloatArray) -> _Spacing:
-        order = np.argsort(anchors_mm, kind="stable")
-        at, wanted = anchors_mm[order], spacings_mm[order]
-        forward = np.minimum.accumulate(wanted - _GRADING * at) + _GRADING * at
-        backward = np.minimum.accumulate((wanted + _GRADING * at)[::-1])[::-1] - _GRADING * at
-        wanted = np.minimum(forward, backward)
-        keep = np.concatenate(([True], np.diff(at) > 1e-9))
-        at, wanted = at[keep], wanted[keep]
-        # Between two anchors the spacing rises, stays at its largest, and falls.
-        length, a, b = np.diff(at), wanted[:-1], wanted[1:]
-        top = np.minimum(0.5 * (a + b + _GRADING * length), _LONGEST_CELL_MM)
-        rise, fall = np.maximum(top - a, 0) / _GRADING, np.maximum(top - b, 0) / _GRADING
-        node = np.empty(3 * len(length) + 1)
-        value = np.empty_like(node)
-        node[0::3], value[0::3] = at, wanted
-        node[1::3], value[1::3] = at[:-1] + rise, np.maximum(top, np.minimum(a, b))
-        node[2::3], value[2::3] = at[1:] - fall, np.maximum(top, np.minimum(a, b))
-        node = np.maximum.accumulate(node)
-        step, slope = np.diff(node), np.diff(value)
-        level = np.abs(slope) <= 1e-9 * value[:-1]
-        inverse = np.where(level, 1 / value[:-1], np.log(value[1:] / value[:-1]) / np.where(level, 1.0, slope))
-        cells = np.concatenate(([0.0], np.cumsum(step * inverse)))
-        begin = np.interp(line.begin_mm, node, cells)
-        return _Spacing(node, value, cells, begin, np.interp(line.end_mm, node, cells) - begin)
-
-    def arc_mm(self, cells: FloatArray) -> FloatArray:
-        """Position on the axis of arc length after so many cells: the exact inverse of `cells`."""
-        k = np.clip(np.searchsorted(self.cells, cells, side="right") - 1, 0, len(self.cells) - 2)
-        step = self.node_mm[k + 1] - self.node_mm[k]
-        slope = (self.spacing_mm[k + 1] - self.spacing_mm[k]) / np.maximum(step, 1e-12)
-        into = cells - self.cells[k]
-        flat = np.abs(slope * into) < 1e-9
-        growth = np.where(flat, into, np.expm1(slope * into) / np.where(flat, 1.0, slope))
-        arc: FloatArray = self.node_mm[k] + np.clip(self.spacing_mm[k] * growth, 0.0, step)
-        return arc
-
-    def at(self, arc_mm: FloatArray) -> FloatArray:
-        spacing: FloatArray = np.interp(arc_mm, self.node_mm, self.spacing_mm)
-        return spacing
-
-
-def _sampled(line: _Polylines, spacing: _Spacing) -> tuple[PenPaths, FloatArray]:
-    """The splines with that spacing, and the arc length of each of their control points."""
-    n_cells = np.maximum(np.ceil(spacing.total).astype(np.int64) + _RAMP_CELLS, _FEWEST_CELLS)
-    count = n_cells + DEGREE
-    sigma = within(count).astype(np.float64) - 2.0
-    per_control = np.repeat(np.arange(len(n_cells)), count)
-    stretch = spacing.total / (n_cells - _RAMP_CELLS)
-
-    def arc_at(sigma: FloatArray) -> FloatArray:
-        cells = spacing.begin[per_control] + stretch[per_control] * _ramped(sigma, n_cells[per_control])
-        return spacing.arc_mm(cells)
-
-    three_mm = [arc_at(sigma + step) for step in (-1, 0, 1)]
-    arc, controls = _sharpened(*three_mm), _sharpened(*map(line.at, three_mm))
+def _halved(paths: SplinePaths, cells: BoolArray, around: int) -> FloatArray:
+    """(n_controls, 1) factors for control points: a half at those of the cells of the mask, from there rising to 1 over
+    so many others of the same path; one factor for the five at each end, which belong together."""
+    count = paths.n_cells + DEGREE
+    place = np.arange(len(paths.controls)) + around * np.repeat(np.arange(len(count)), count)
+    touched = np.zeros(int(place[-1]) + 1)
+    touched[place[local_controls(paths)[cells].ravel()]] = 1.0
+    distance = np.abs(np.arange(-around, around + 1)) / (around + 1)
+    near = np.convolve(touched, 2.0 * np.minimum(1.0 - distance, 0.5))[around:][place]
+    factors: FloatArray = 1.0 - 0.5 * np.minimum(near, 1.0)
     starts = starts_of(count)
-    half_mm = 0.5 * (line.end_mm - line.begin_mm)
-    for ends_mm, first, sign, point, neighbour in (
-        (line.begin_mm, starts[:-1], 1, line.first, line.first + 1),
-        (line.end_mm, starts[1:] - 1, -1, line.last, line.last - 1),
-    ):
-        cubic_mm = np.minimum(stretch / _RAMP_CELLS**2 * spacing.at(ends_mm), half_mm / 50)
-        tangent = line.points_mm[neighbour] - line.points_mm[point]
-        tangent /= np.hypot(*tangent.T)[:, None]
-        for k, offset in enumerate(_FIRST_OFFSETS):
-            controls[first + sign * k] = line.points_mm[point] + (offset * cubic_mm)[:, None] * tangent
-            arc[first + sign * k] = ends_mm + sign * offset * cubic_mm
-    return PenPaths(n_cells, controls), arc
+    for ends in (starts[:-1, None] + np.arange(DEGREE), starts[1:, None] - 1 - np.arange(DEGREE)):
+        factors[ends] = factors[ends].min(axis=1, keepdims=True)
+    return factors[:, None]
 
 
-def _sharpened(before: FloatArray, at: FloatArray, behind: FloatArray) -> FloatArray:
-    sharpened: FloatArray = at - _SHARPENING * (before - 2 * at + behind)
-    return sharpened
-
-
-def _ramped(sigma: FloatArray, n_cells: IntArray) -> FloatArray:
-    """Cells of uniform rate passed at sigma: of slope x^2 (3 - 2 x), x = sigma / ramp, near both ends, else 1."""
-
-    def short_of(distance: FloatArray) -> FloatArray:
-        x = np.clip(distance / _RAMP_CELLS, 0.0, 1.0)
-        return _RAMP_CELLS * (x**3 - 0.5 * x**4 - x + 0.5)  # integral of slope - 1, zero from the ramp's end on
-
-    inside = np.clip(sigma, 0.0, n_cells)
-    ramped: FloatArray = inside + short_of(inside) - short_of(n_cells - inside) - 0.5 * _RAMP_CELLS
-    return ramped
-
-
-def _deviation(
-    line: _Polylines, paths: PenPaths, arcs_mm: FloatArray, spacing: _Spacing
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """How far each sampled curve point is from the polyline point of the same arc length, and each vertex from
-    the curve there: upper bounds of the distance both ways. Also where on the axis of arc length that is,
-    and the spacing used there."""
-    cells = first_controls(paths.n_cells, DEGREE)
-    at = evaluate(arcs_mm[:, None], cells, _SAMPLED, DEGREE)[:, :, 0].ravel()
-    gap = evaluate(paths.controls, cells, _SAMPLED, DEGREE).reshape(-1, 2) - line.at(at)
-    # A corner is furthest from the curve, and mostly lies between samples.
-    passed = np.interp(line.arc_mm, at, np.arange(len(at))) / len(_SAMPLED)
-    cell = passed.astype(np.int64)
-    corner_gap = evaluate_at(paths.controls, cells[cell], passed - cell, DEGREE) - line.points_mm
-    at = np.concatenate((at, line.arc_mm))
-    return np.hypot(*np.concatenate((gap, corner_gap)).T), at, spacing.at(at)
+def _deviations(line: Polylines, paths: SplinePaths, exact_above_mm: float) -> FloatArray:
+    """(cells,) how far a path of x, y and arc length is from its polyline in each cell, both ways."""
+    ends = np.cumsum(paths.n_cells) - 1
+    curve = paths.positions(np.append(_SAMPLED, 1.0))
+    points = np.insert(curve[:, :-1].reshape(-1, 3), _PER_CELL * (ends + 1), curve[ends, -1], axis=0)
+    of_path = lines_of_parts(paths.n_cells, _PER_CELL)
+    deviations = line.deviations(points[:, :2], points[:, 2], of_path, exact_above_mm)
+    return largest_of_parts(deviations, paths.n_cells, _PER_CELL)

@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from planner.arrays import FloatArray
-from planner.placement.pen_path import expected_cells
+from planner.placement.rounded_path import expected_cells
 
 _WORK = 1500
 """What pieces are near to, in cells of their smooth paths. A stroke of up to half as much again stays whole."""

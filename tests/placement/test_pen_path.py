@@ -125,7 +125,8 @@ def test_any_polyline_is_followed(line: FloatArray) -> None:
 @example(SHAPES["hair"])
 @example(SHAPES["reversal"])
 def test_paths_begin_and_end_fit_for_rest(line: FloatArray) -> None:
-    """The first and second derivatives by sigma are zero at both ends, the third is not, and points the right way."""
+    """The first and second derivatives by sigma are zero at both ends, the third is not, and points the right way where
+    the tolerance leaves only one: a stroke within it may be drawn as hardly more than a dot."""
     paths = smooth_paths([line], TOLERANCE_MM)
     curve = curve_of(paths, 0)
     ends = [0.0, float(paths.n_cells[0]) - 1e-12]
@@ -133,7 +134,8 @@ def test_paths_begin_and_end_fit_for_rest(line: FloatArray) -> None:
     for order in (1, 2):
         np.testing.assert_allclose(curve.derivative(order)(ends), 0.0, atol=20 * rounding)
     third = curve.derivative(3)(ends)
-    assert (third[0] @ (line[1] - line[0])) > 0 and (third[1] @ (line[-1] - line[-2])) > 0
+    for derivative, step in ((third[0], line[1] - line[0]), (third[1], line[-1] - line[-2])):
+        assert derivative @ step > 0 or np.hypot(*step) < 4 * TOLERANCE_MM
 
 
 def test_derivatives_are_continuous_to_the_fourth_and_are_those_of_the_spline() -> None:

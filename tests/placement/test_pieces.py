@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from planner.arrays import FloatArray
 from planner.placement import pieces
-from planner.placement.pen_path import expected_cells, smooth_paths
+from planner.placement.pen_path import smooth_paths
 from planner.placement.pieces import in_pieces
+from planner.placement.rounded_path import expected_cells
 
 TOLERANCE_MM = 0.025
 

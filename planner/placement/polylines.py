@@ -1,0 +1,159 @@
+"""Polylines laid end to end on one axis of arc length, and distances between them and curves that follow them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from planner.arrays import BoolArray, FloatArray, IntArray
+from planner.ragged import starts_of
+
+_GAP_MM = 1e4
+_STEPS = 3
+"""Steps along a polyline towards the point that is nearest: each goes as far as its segment says."""
+_LONGEST_STEP_MM = 0.5
+_STRIDES = (1, 2, 4, 8, 16, 32, 16, 8, 4, 2, 1)
+"""How many points of a curve are gone at a time in search of the one nearest to a vertex: few first, so that none leads
+to another stretch of the curve while this one is nearer."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Polylines:
+    """Polylines on one axis of arc length, with a gap between each and the next that keeps them apart.
+
+    points_mm: (n, 2) all points; arc_mm: (n,) where they are on the axis; first, last: (n_lines,) of each polyline.
+    """
+
+    points_mm: FloatArray
+    arc_mm: FloatArray
+    first: IntArray
+    last: IntArray
+
+    @staticmethod
+    def of(polylines: Sequence[FloatArray]) -> Polylines:
+        """Of polylines (n >= 2, 2) with distinct neighbours."""
+        counts = np.array([len(points) for points in polylines])
+        points = np.concatenate(polylines)
+        starts = starts_of(counts)
+        steps = np.zeros(len(points))
+        steps[1:] = np.hypot(*np.diff(points, axis=0).T)
+        steps[starts[1:-1]] = _GAP_MM
+        return Polylines(points, np.cumsum(steps), starts[:-1], starts[1:] - 1)
+
+    def subset(self, chosen: BoolArray) -> Polylines:
+        """Only the polylines of the mask (n_lines,); arc lengths stay what they are."""
+        counts = self.last - self.first + 1
+        points = np.repeat(chosen, counts)
+        starts = starts_of(counts[chosen])
+        return Polylines(self.points_mm[points], self.arc_mm[points], starts[:-1], starts[1:] - 1)
+
+    @property
+    def begin_mm(self) -> FloatArray:
+        return self.arc_mm[self.first]
+
+    @property
+    def end_mm(self) -> FloatArray:
+        return self.arc_mm[self.last]
+
+    def at(self, arc_mm: FloatArray) -> FloatArray:
+        """(..., 2) points at positions on the axis of arc length."""
+        return np.stack([np.interp(arc_mm, self.arc_mm, column) for column in self.points_mm.T], axis=-1)
+
+    @property
+    def directions(self) -> FloatArray:
+        """(n - 1, 2) unit vectors from each point to the next; those across a gap mean nothing."""
+        steps = np.diff(self.points_mm, axis=0)
+        unit: FloatArray = steps / np.maximum(np.hypot(*steps.T), 1e-300)[:, None]
+        return unit
+
+    @property
+    def turns(self) -> FloatArray:
+        """(n,) 2 sin(turning angle / 2) at each point, 0 at the ends of polylines."""
+        turns = np.zeros(len(self.points_mm))
+        turns[1:-1] = np.hypot(*np.diff(self.directions, axis=0).T)
+        turns[self.first] = turns[self.last] = 0.0
+        return turns
+
+    def segments(self, arc_mm: FloatArray, line: IntArray) -> IntArray:
+        """(n,) the segment at each position, by the number of its first point; line: (n,) the polyline that it is
+        on."""
+        found = np.searchsorted(self.arc_mm, arc_mm, side="right") - 1
+        return np.clip(found, self.first[line], self.last[line] - 1)
+
+    def feet(self, points_mm: FloatArray, near_mm: FloatArray, line: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Positions (n,) on the axis of points of the polylines that are nearest to points (n, 2), and how far these
+        are, found from positions (n,) nearby: the distance is never too small."""
+        directions, begin, end = self.directions, self.begin_mm[line], self.end_mm[line]
+        arc = np.clip(near_mm, begin, end)
+        offset = points_mm - self.at(arc)
+        best, least = arc, np.hypot(*offset.T)
+        for _ in range(_STEPS):
+            step = (offset * directions[self.segments(arc, line)]).sum(axis=1)
+            arc = np.clip(arc + np.clip(step, -_LONGEST_STEP_MM, _LONGEST_STEP_MM), begin, end)
+            offset = points_mm - self.at(arc)
+            distance = np.hypot(*offset.T)
+            best, least = np.where(distance < least, arc, best), np.minimum(distance, least)
+        return best, least
+
+    def deviations(
+        self, curves_mm: FloatArray, near_mm: FloatArray, line: IntArray, exact_above_mm: float
+    ) -> FloatArray:
+        """(n,) how far curves are from the polylines that they follow at each of their points, and each point of the
+        polylines from the curves, told where they pass it; never too small, and exact above a distance.
+
+        curves_mm: (n, 2) curve after curve; near_mm: (n,) about where these points belong on the axis; line: (n,) the
+        polyline that each follows.
+        """
+        foot_mm, deviation = self.feet(curves_mm, near_mm, line)
+        for index in np.flatnonzero(deviation > exact_above_mm).tolist():
+            reach = 2.0 * float(deviation[index])
+            low, high = np.searchsorted(self.arc_mm, foot_mm[index] + np.array([-reach, reach])).tolist()
+            low, high = max(low - 1, int(self.first[line[index]])), min(high + 1, int(self.last[line[index]]) + 1)
+            piece = self.points_mm[low:high]
+            deviation[index] = min(deviation[index], to_segments(curves_mm[index], piece[:-1], piece[1:]).min())
+        place, missed = self._passed(curves_mm, foot_mm, line)
+        np.maximum.at(deviation, place, missed)
+        return deviation
+
+    def _passed(self, curves_mm: FloatArray, foot_mm: FloatArray, line: IntArray) -> tuple[IntArray, FloatArray]:
+        """The point of a curve nearest to each point of the polylines, and how far curve and point are apart."""
+        counts = self.last - self.first + 1
+        first = np.searchsorted(line, np.arange(len(counts)))
+        low = np.repeat(first, counts)
+        high = np.repeat(np.append(first[1:], len(line)) - 1, counts)
+        place = np.clip(np.searchsorted(np.maximum.accumulate(foot_mm), self.arc_mm), low, high)
+        least = np.hypot(*(curves_mm[place] - self.points_mm).T)
+        for stride in _STRIDES:
+            middle = place
+            for step in (-stride, stride):
+                tried = np.clip(middle + step, low, high)
+                gap = np.hypot(*(curves_mm[tried] - self.points_mm).T)
+                place, least = np.where(gap < least, tried, place), np.minimum(gap, least)
+        for begin, end in ((np.maximum(place - 1, low), place), (place, np.minimum(place + 1, high))):
+            np.minimum(least, to_segments(self.points_mm, curves_mm[begin], curves_mm[end]), out=least)
+        return place, least
+
+
+def to_segments(points_mm: FloatArray, begins_mm: FloatArray, ends_mm: FloatArray) -> FloatArray:
+    """(n,) distance of points to segments, all (n, 2) or broadcast to that."""
+    along, offset = ends_mm - begins_mm, points_mm - begins_mm
+    share = (offset * along).sum(axis=-1) / np.maximum((along * along).sum(axis=-1), 1e-18)
+    off = offset - np.clip(share, 0.0, 1.0)[..., None] * along
+    distance: FloatArray = np.hypot(off[..., 0], off[..., 1])
+    return distance
+
+
+def lines_of_parts(n_parts: IntArray, per_part: int) -> IntArray:
+    """(total,) the curve that each point is of, where curves have so many points a part and one more at their end."""
+    return np.repeat(np.arange(len(n_parts)), per_part * n_parts + 1)
+
+
+def largest_of_parts(values: FloatArray, n_parts: IntArray, per_part: int) -> FloatArray:
+    """(total parts,) the largest of values at such points, of the part that they are in."""
+    ends = per_part * np.cumsum(n_parts) + np.arange(len(n_parts))
+    inside = values.copy()
+    inside[ends - 1] = np.maximum(values[ends - 1], values[ends])
+    largest: FloatArray = np.delete(inside, ends).reshape(-1, per_part).max(axis=1)
+    return largest

@@ -1,0 +1,93 @@
+"""A stroke takes no longer for a larger tolerance, nor for facets and noise within it; and keeps to it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from planner.arms.arm_file import load_arm
+from planner.arrays import FloatArray
+from planner.execution.context import PlanContext
+from planner.motion.line import timed_lines
+from planner.motion.timed_stroke import TimedStroke
+from planner.settings import PlanSettings
+
+_TOLERANCES_MM = (0.02, 0.05, 0.125, 0.3)
+_TIMING = 0.01
+"""How near the least time a motion is made to be: nearer costs processor time."""
+
+
+@cache
+def context_of(tolerance_mm: float, rate_hz: float = 1000.0) -> PlanContext:
+    return PlanContext.of(load_arm("drawing_arm"), PlanSettings(tolerance_mm=tolerance_mm, rate_hz=rate_hz))
+
+
+def drawn(context: PlanContext, strokes: Sequence[FloatArray]) -> list[TimedStroke]:
+    timed = timed_lines(context.model, context.references, context.settings, strokes)
+    return [stroke for stroke in timed if isinstance(stroke, TimedStroke)]
+
+
+def duration_s(context: PlanContext, stroke: FloatArray) -> float:
+    (timed,) = drawn(context, [stroke])
+    return (len(timed.joints) - 1) / context.settings.rate_hz
+
+
+@st.composite
+def strokes(draw: st.DrawFn) -> FloatArray:
+    """Two to seven vertices within some millimetres or centimetres, in the middle of the paper."""
+    scale = 10.0 ** draw(st.floats(0.0, 1.5))
+    unit = st.integers(-500, 500).map(lambda value: value / 1000)
+    line = scale * np.array(draw(st.lists(st.tuples(unit, unit), min_size=2, max_size=7))) + np.array([75.0, 0.0])
+    line = line[np.concatenate(([True], np.hypot(*np.diff(line, axis=0).T) > 1e-6))]
+    return line if len(line) > 1 else np.stack((line[0], line[0] + [scale, 0.0]))
+
+
+@settings(deadline=None, max_examples=8)
+@given(strokes())
+def test_relaxing_the_tolerance_makes_no_stroke_slower(stroke: FloatArray) -> None:
+    times = [duration_s(context_of(tolerance_mm), stroke) for tolerance_mm in _TOLERANCES_MM]
+    for tight, loose in pairwise(times):
+        assert loose <= (1 + _TIMING) * tight + 0.001
+
+
+@pytest.mark.parametrize("noise_mm", [0.0, 1e-4, 2e-3])
+@pytest.mark.parametrize("points", [300, 1200, 4800])
+def test_points_and_noise_below_the_tolerance_cost_no_time(points: int, noise_mm: float) -> None:
+    """A spiral through few points or many, exact or with noise, against its smoothest form."""
+
+    def spiral(count: int) -> FloatArray:
+        turn = np.linspace(0.0, 6 * np.pi, count)
+        size = np.linspace(4.0, 25.0, count)[:, None]
+        return np.array([75.0, 0.0]) + size * np.column_stack((0.7 * np.cos(turn), np.sin(turn)))
+
+    context = context_of(0.05)
+    noise = np.random.default_rng(1).uniform(-noise_mm, noise_mm, (points, 2))
+    assert duration_s(context, spiral(points) + noise) <= 1.02 * duration_s(context, spiral(20_000))
+
+
+@pytest.mark.parametrize("rate_hz", [50.0, 100.0, 250.0])
+def test_chords_between_samples_and_stroke_are_within_the_tolerance_and_use_it(rate_hz: float) -> None:
+    """By Shapely, both ways, with the exact arm. Some of the strokes use nearly all there is."""
+    random = np.random.default_rng(5)
+    lines = [np.array([75.0, 0.0]) + np.cumsum(random.normal(0, 2.0, (count, 2)), axis=0) for count in range(2, 14)]
+    context = context_of(0.05, rate_hz)
+    kinematics = context.model.kinematics
+    worst = []
+    for stroke, line in zip(drawn(context, lines), lines, strict=True):
+        fine = np.concatenate([a + (b - a) * np.linspace(0, 1, 9)[:, None] for a, b in pairwise(stroke.joints)])
+        tips = shapely.LineString(kinematics.tip_mm(kinematics.independent_of(fine))[:, :2])
+        wanted = shapely.segmentize(shapely.LineString(line), 0.01)
+        away = [
+            shapely.distance(tips, shapely.points(shapely.get_coordinates(wanted))).max(),
+            shapely.distance(wanted, shapely.points(shapely.get_coordinates(tips))).max(),
+        ]
+        worst.append(max(away))
+    assert max(worst) <= 0.05
+    assert max(worst) >= 0.9 * 0.05
