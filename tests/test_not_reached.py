@@ -14,6 +14,7 @@ from planner.errors import PlanError
 from planner.kinematics.limits import Limits
 from planner.motion.timed_stroke import Contact
 from planner.pipeline import plan
+from planner.placement.tube import Tube
 from planner.settings import CanvasKind, PlaceKind, PlanSettings
 from planner.travel import travel_moves
 from planner.travel.branch_change import plan_branch_change
@@ -52,7 +53,11 @@ def test_a_pen_path_that_is_not_refined_to_the_end_is_off_the_drawing(
 ) -> None:
     assert warnings_of(tmp_path, WAVE_AND_HOOK, tolerance_mm=0.1) == []
     monkeypatch.setattr("planner.placement.pen_path._ROUNDS", 1)
-    assert warnings_of(tmp_path, WAVE_AND_HOOK, tolerance_mm=0.1) == [OFF_THE_DRAWING + "1 stroke"]
+    monkeypatch.setattr("planner.placement.pen_path._approach", lambda *_: None)
+    around = Tube.around
+    monkeypatch.setattr(Tube, "around", lambda line, paths, radius_mm: around(line, paths, 4.0 * radius_mm))
+    (told,) = warnings_of(tmp_path, WAVE_AND_HOOK, tolerance_mm=0.1)
+    assert told.startswith(OFF_THE_DRAWING)
 
 
 def test_a_stroke_that_is_not_slowed_to_the_end_is_off_the_drawing(

@@ -22,7 +22,12 @@ _GAIN = 1e-9
 
 
 def improve(
-    start: FloatArray, entries: FloatArray, exits: FloatArray, tour: IntArray, metric: Metric, rounds: int = _ROUNDS
+    start: FloatArray,
+    entries: FloatArray,
+    exits: FloatArray,
+    tour: IntArray,
+    metric: Metric,
+    rounds: int | None = None,
 ) -> tuple[IntArray, BoolArray, bool]:
     """A tour no longer than `tour`, which strokes it runs the other way, and whether the search came to its end, where
     no move is left that gains, rather than to the limit of its rounds or its work.
@@ -33,7 +38,7 @@ def improve(
     if n < 2:
         return tour, np.zeros(n, dtype=np.bool_), True
     search = _Search(start, entries, exits, tour, metric)
-    is_finished = search.run(rounds)
+    is_finished = search.run(_ROUNDS if rounds is None else rounds)
     found = search.tour[1:]
     is_reversed = np.zeros(n, dtype=np.bool_)
     is_reversed[found // 2] = found % 2 == 1

@@ -99,7 +99,7 @@ def test_a_curve_that_needs_too_many_points_is_refused(tmp_path: Path, monkeypat
     ("body", "advice"),
     [
         ("", "draw lines or shapes"),
-        ("<image width='9' height='9' href='data:image/png;base64,AAAA'/>", "trace pictures to paths"),
+        ("<image width='9' height='9' href='data:image/png;base64,AAAA'/>", "draw pictures with --image"),
         ('<rect width="0" height="5"/>', "a size, and a fill or a stroke"),
         ('<path d="M0 0L1e12 5"/>', "below 1e9"),
     ],
