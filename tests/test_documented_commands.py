@@ -51,30 +51,31 @@ def written_by(words: list[str]) -> list[Path]:
     ]
 
 
-def test_commands_of_every_page_do_what_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each page in a folder of its own; a plan that several begin with is made once."""
-    planned: dict[tuple[str, ...], dict[Path, bytes]] = {}
-    for page in PAGES:
-        folder = tmp_path / page.stem
-        shutil.copytree(ROOT / "examples", folder / "examples")
-        monkeypatch.chdir(folder)
-        for words in commands_of(page):
-            command = at_hand(words)
-            told = f"{page.name}: {shlex.join(command)}"
-            assert command[0] == "plan", f"{told} is to be marked with '{NOT_RUN} why -->'"
-            results = written_by(command)
-            for path, content in planned.get(tuple(command), {}).items():
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_bytes(content)
-            if tuple(command) not in planned:
-                for path in results:
-                    if path.is_file():
-                        path.unlink()
-                assert main(command[1:]) == 0, told
-                if command[1].endswith(".svg"):
-                    planned[tuple(command)] = {path: path.read_bytes() for path in results}
+_planned: dict[tuple[str, ...], dict[Path, bytes]] = {}
+"""What plans have written in this process, by their words: one that several pages begin with is made once."""
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_commands_of_a_page_do_what_it_says(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+    for words in commands_of(page):
+        command = at_hand(words)
+        told = f"{page.name}: {shlex.join(command)}"
+        assert command[0] == "plan", f"{told} is to be marked with '{NOT_RUN} why -->'"
+        results = written_by(command)
+        for path, content in _planned.get(tuple(command), {}).items():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+        if tuple(command) not in _planned:
             for path in results:
-                assert path.is_dir() or path.stat().st_size > 0, f"{told}: {path}"
+                if path.is_file():
+                    path.unlink()
+            assert main(command[1:]) == 0, told
+            if command[1].endswith(".svg"):
+                _planned[tuple(command)] = {path: path.read_bytes() for path in results}
+        for path in results:
+            assert path.is_dir() or path.stat().st_size > 0, f"{told}: {path}"
 
 
 def test_pages_have_commands_and_every_block_that_is_not_run_says_why() -> None:
