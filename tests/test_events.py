@@ -120,3 +120,57 @@ def test_a_program_is_asked_for_pens_and_answers(tmp_path: Path) -> None:
         assert process.wait() == 0
     assert [event["number"] for event in asked] == [1] and asked[0]["pen"]
     assert event["event"] == "ended" and event["complete"]
+
+
+@contextmanager
+def jogging(*options: str) -> Iterator[subprocess.Popen[str]]:
+    with subprocess.Popen(
+        [sys.executable, "-m", "planner", "jog", "--events", *options],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def test_an_arm_is_jogged_by_a_program_that_is_told_what_came_of_it(tmp_path: Path) -> None:
+    target = tmp_path / "mine.toml"
+    with jogging("--arm", "drawing_arm_2022", "-o", str(target)) as process:
+        told = events_of(process)
+        first = next(told)
+        assert first["event"] == "stands" and first["saved"] and not first["pen_is_up"]
+        name, here = first["chosen"], first["joints"][0]["at"]
+        press(process, "move 2\n")
+        moved = next(told)["joints"][0]
+        assert moved["at"] == pytest.approx(here + 2) and moved["told"] != first["joints"][0]["told"]
+        press(process, "move 400\nnonsense\n")
+        for word in (name, "nonsense"):
+            assert word in next(told)["why"]
+            assert next(told)["joints"][0] == moved
+        press(process, "high\nsave\n")
+        assert not next(told)["saved"]
+        assert next(told) == {"event": "saved", "file": str(target)}
+        assert next(told)["saved"] and target.exists()
+        press(process, "quit\n")
+        assert not list(told) and process.wait() == 0
+
+
+def test_stop_overtakes_the_commands_before_it() -> None:
+    with jogging("--arm", "drawing_arm") as process:
+        told = events_of(process)
+        next(told)
+        press(process, "move 1\n" * 2000 + "move -1\n" * 2000 + "stop\n")
+        seen = list(told)
+        assert seen[-1] == {"event": "stopped"} and len(seen) < 4000
+        assert process.wait() == 130
+
+
+def test_events_of_a_jog_take_no_script(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    script = tmp_path / "moves.txt"
+    script.write_text("show\n")
+    assert main(["jog", "--arm", "drawing_arm", "--events", "--script", str(script)]) == 2
+    assert "standard input" in capsys.readouterr().err

@@ -54,6 +54,16 @@ class Jogging:
         return self._calibration.to_servos(self._at)
 
     @property
+    def unit(self) -> str:
+        """Of the values: us or counts."""
+        return self._calibration.unit
+
+    @property
+    def pen_is_up(self) -> bool:
+        """By `pen_up`, so that `pen_down` brings it back."""
+        return self._below is not None
+
+    @property
     def positions(self) -> FloatArray:
         """(n_joints,) rad or mm, as the arm is known by now."""
         return own_calibration(self.arm).to_joints(self.values)
@@ -127,12 +137,12 @@ class Jogging:
 
     def lines(self) -> list[str]:
         """Where every joint stands, the chosen one marked, and the pen."""
-        unit, values, positions = self._calibration.unit, self.values, self.positions
+        values, positions = self.values, self.positions
         rows = []
         for k, joint in enumerate(self.arm.joints):
             low, at, high = np.array([joint.minimum, positions[k], joint.maximum]) / joint.per_file_unit
             rows.append(
-                f"{'>' if k == self.joint else ' '} {joint.name}: {values[k]:.1f} {unit}, {at:.2f} {joint.file_unit} "
+                f"{'>' if k == self.joint else ' '} {joint.name}: {values[k]:.1f} {self.unit}, {at:.2f} {joint.file_unit} "
                 f"({low:.1f} to {high:.1f})"
             )
         x, y, height = self.tip_mm

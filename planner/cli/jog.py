@@ -10,8 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from planner.cli.events import add_events_option, tell
 from planner.cli.files import output_file
 from planner.cli.jog_commands import COMMANDS, carry_out
+from planner.cli.jog_events import Piped, follow_told
 from planner.cli.jog_keyboard import Keyboard
 from planner.cli.keys import terminal_keys
 from planner.cli.output import check_target
@@ -54,8 +56,8 @@ def jog(arguments: list[str]) -> int:
         from planner.arms.lerobot import with_lerobot_calibration
 
         arm = with_lerobot_calibration(arm, Path(options.imported[1]))
-        if not options.port and not options.script:
-            found.write(arm)
+        if not options.port and not options.script and not options.events:
+            print_lines([f"wrote {found.write(arm)}"])
             return 0
     _jogged(options, arm, found)
     return 0
@@ -91,6 +93,7 @@ def _parser() -> Parser:
         metavar=("lerobot", "FILE"),
         help="begin with the ids, zeros and ranges of LeRobot's calibration; alone, it moves nothing",
     )
+    add_events_option(parser, ", and commands on standard input, of which stop holds the arm at once")
     return parser
 
 
@@ -108,6 +111,8 @@ def _check(options: argparse.Namespace) -> None:
         raise UsageError(f"--driver {options.driver} needs --port; plan ports lists what is plugged in")
     if options.baud is not None and options.baud <= 0:
         raise UsageError(f"--baud {options.baud} is no speed of a line, such as 115200")
+    if options.events and options.script not in (None, STANDARD):
+        raise UsageError("--events takes its commands from standard input, not from a --script")
     if options.output is None and options.arm.endswith(".toml"):
         options.output = Path(options.arm)
     if options.imported and not options.output:
@@ -151,17 +156,24 @@ def _jogged(options: argparse.Namespace, arm: Arm, found: FoundArm) -> None:
         closing(driver),
         _keyboard(options) as keyboard,
     ):
-        commands = keyboard.commands() if keyboard else _lines(options.script)
-        jogging = Jogging(arm, driver, calibration, clock, keyboard.watch if keyboard else lambda: None)
+        said = Piped() if options.events else keyboard
+        commands = said.commands() if said else _lines(options.script)
+        jogging = Jogging(arm, driver, calibration, clock, said.watch if said else lambda: None)
         driver.open()
         if not simulated:
             _announce(options, arm, calibration, keyboard)
         try:
             jogging.start()
-            _follow(commands, jogging, lambda: found.write(jogging.arm), by_script=keyboard is None)
+            if options.events:
+                follow_told(commands, jogging, lambda: found.write(jogging.arm), lambda: found.holds(jogging.arm))
+            else:
+                _follow(commands, jogging, lambda: found.write(jogging.arm), by_script=keyboard is None)
         except KeyboardInterrupt:
             driver.emergency_stop()
-            print_note("stopped: the arm holds where it is")
+            if options.events:
+                tell("stopped")
+            else:
+                print_note("stopped: the arm holds where it is")
             raise
         finally:
             if not found.holds(jogging.arm):
@@ -194,11 +206,11 @@ def _announce(options: argparse.Namespace, arm: Arm, calibration: Calibration, k
         raise UsageError("nobody pressed y: nothing was moved")
 
 
-def _follow(commands: Iterator[str], jogging: Jogging, save: Callable[[], None], *, by_script: bool) -> None:
+def _follow(commands: Iterator[str], jogging: Jogging, save: Callable[[], str], *, by_script: bool) -> None:
     print_lines(jogging.lines())
     for number, command in enumerate(commands, start=1):
         try:
-            if not carry_out(command, jogging, save):
+            if not carry_out(command, jogging, lambda: print_lines([f"wrote {save()}"])):
                 return
         except UsageError as error:
             if by_script:
@@ -210,7 +222,7 @@ def _follow(commands: Iterator[str], jogging: Jogging, save: Callable[[], None],
 @contextmanager
 def _keyboard(options: argparse.Namespace) -> Iterator[Keyboard | None]:
     """None for a script, or where standard input is no terminal whose keys can be read one by one."""
-    with nullcontext() if options.script else terminal_keys() as keys:
+    with nullcontext() if options.script or options.events else terminal_keys() as keys:
         if keys is not None:
             print_note(COMMANDS[COMMANDS.index("keys:") :])
         yield None if keys is None else Keyboard(keys)

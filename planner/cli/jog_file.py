@@ -9,7 +9,6 @@ from typing import IO, cast
 from planner.arms.arm import Arm
 from planner.arms.arm_edit import edited
 from planner.arms.arm_file import arm_file_text, load_arm, read_arm_file
-from planner.cli.terminal import print_lines
 from planner.errors import ArmFileError, UsageError
 from planner.files import written_aside
 
@@ -26,8 +25,8 @@ class FoundArm:
         """Whether all that was found of the arm is in the file."""
         return arm is self._saved
 
-    def write(self, arm: Arm) -> None:
-        """Errors: UsageError, OutputError; then the file is as it was."""
+    def write(self, arm: Arm) -> str:
+        """The name of the file. Errors: UsageError, OutputError; then it is as it was."""
         if self._target is None:
             raise UsageError("nowhere to save it: give -o ARM.toml")
         text = edited(self._text, self.before, arm, f"{arm.name} as found by plan jog.")
@@ -41,4 +40,4 @@ class FoundArm:
         with written_aside(self._target) as file:
             cast("IO[str]", file).write(text)
         self._saved = arm
-        print_lines([f"wrote {self._target}"])
+        return str(self._target)
