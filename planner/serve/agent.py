@@ -68,8 +68,8 @@ class _Tools:
     async def arms(self) -> list[dict[str, Any]]:
         """The arms that there are, with the width and height of what each can draw on."""
         found = []
-        for name in self._house.arms():
-            view = json.loads((await self._house.arm_view(name)).read_text(encoding="utf-8"))
+        for name in self._house.arms.names():
+            view = json.loads((await self._house.arms.view(name)).read_text(encoding="utf-8"))
             corners = view.get("canvas_mm") or [[0, 0]]
             x, y = ([corner[axis] for corner in corners] for axis in (0, 1))
             found.append({"name": name, "width_mm": max(y) - min(y), "height_mm": max(x) - min(x)})
@@ -113,7 +113,7 @@ class _Tools:
                 raise UsageError("this server moves simulated arms alone: it was started without --real-arm")
             if not await agrees(f"an agent asks to draw {planned.name} with {driver} at {port or 'its port'}"):
                 raise UsageError("nobody at the terminal has agreed to that")
-        self._house.arm.begin(planned, {"driver": driver, "port": port, "fast": fast and driver in SIMULATORS})
+        self._house.run(planned, {"driver": driver, "port": port, "fast": fast and driver in SIMULATORS})
         return self._house.arm.state()
 
     async def status(self) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
 from planner.errors import PlannerError, UsageError
+from planner.serve.calibration import KEY, READING, SHEET
 from planner.serve.guard import Guard
 from planner.serve.house import House
 from planner.serve.planning import LINES, MOTION
@@ -49,6 +50,15 @@ def application(house: House, names: frozenset[str], token: str | None) -> Starl
         Route("/api/jobs/{id}/cancel", _plainly(pages.cancel), methods=["POST"]),
         Route("/api/jobs/{id}/run", _plainly(pages.run), methods=["POST"]),
         Route("/api/run/{wish}", _plainly(pages.wish), methods=["POST"]),
+        Route("/api/jog", _plainly(pages.jog), methods=["POST"]),
+        Route("/api/jog/do", _plainly(pages.jog_do), methods=["POST"]),
+        Route("/api/jog/stop", _plainly(pages.jog_stop), methods=["POST"]),
+        Route("/api/calibration", _plainly(pages.calibration), methods=["POST"]),
+        Route("/api/calibration/run", _plainly(pages.calibration_run), methods=["POST"]),
+        Route("/api/calibration/photo", _plainly(pages.calibration_photo), methods=["POST"]),
+        Route("/api/calibration/calibrate", _plainly(pages.calibrate), methods=["POST"]),
+        Route("/api/calibration/sheet", _plainly(pages.sheet)),
+        Route("/api/calibration/reading", _plainly(pages.reading)),
         Mount("/static", StaticFiles(directory=STATIC)),
     ]
 
@@ -94,7 +104,7 @@ class _Pages:
         )
 
     async def arm(self, request: Request) -> Response:
-        return FileResponse(await self._house.arm_view(request.path_params["name"]), media_type="application/json")
+        return FileResponse(await self._house.arms.view(request.path_params["name"]), media_type="application/json")
 
     async def add(self, request: Request) -> Response:
         content = await _body(request, MOST_BYTES)
@@ -120,8 +130,7 @@ class _Pages:
 
     async def plan(self, request: Request) -> Response:
         job, asked = self._job(request), await _asked(request)
-        if self._house.arm.is_busy and self._house.arm.running.job == job.id:
-            raise UsageError(f"{job.name} is being drawn: stop that first")
+        self._house.refuse_while_drawn(job.id, job.name)
         self._house.planning.plan(job, asked)
         return JSONResponse(self._house.job_state(job), 202)
 
@@ -130,7 +139,7 @@ class _Pages:
         return JSONResponse({})
 
     async def run(self, request: Request) -> Response:
-        self._house.arm.begin(self._job(request), await _asked(request))
+        self._house.run(self._job(request), await _asked(request))
         return JSONResponse(self._house.arm.state(), 202)
 
     async def wish(self, request: Request) -> Response:
@@ -141,6 +150,47 @@ class _Pages:
         self._house.arm.wish(wish)
         return JSONResponse(self._house.arm.state())
 
+    async def jog(self, request: Request) -> Response:
+        self._house.jog.begin(await _asked(request))
+        return JSONResponse(self._house.jog.state(), 202)
+
+    async def jog_do(self, request: Request) -> Response:
+        self._house.jog.do(await _asked(request))
+        return JSONResponse(self._house.jog.state(), 202)
+
+    async def jog_stop(self, request: Request) -> Response:
+        self._house.jog.stop()
+        return JSONResponse(self._house.jog.state())
+
+    async def calibration(self, request: Request) -> Response:
+        asked = await _asked(request)
+        self._house.refuse_while_drawn(KEY, "the pattern")
+        self._house.calibration.begin(asked)
+        return JSONResponse(self._house.calibration.state(), 202)
+
+    async def calibration_run(self, request: Request) -> Response:
+        self._house.arm.begin(self._house.calibration.playable(), await _asked(request))
+        return JSONResponse(self._house.arm.state(), 202)
+
+    async def calibration_photo(self, request: Request) -> Response:
+        content = await _body(request, MOST_BYTES)
+        if not content:
+            raise UsageError("the photo is empty")
+        self._house.refuse_while_drawn(KEY, "the pattern")
+        query = request.query_params
+        self._house.calibration.read_photo(query.get("name", ""), content, query.get("bar", ""))
+        return JSONResponse(self._house.calibration.state(), 202)
+
+    async def calibrate(self, request: Request) -> Response:
+        self._house.calibration.calibrate(await _asked(request))
+        return JSONResponse(self._house.calibration.state(), 202)
+
+    async def sheet(self, request: Request) -> Response:
+        return _file(self._house.calibration.folder / SHEET, "application/pdf", name=SHEET)
+
+    async def reading(self, request: Request) -> Response:
+        return _file(self._house.calibration.folder / READING, "image/png")
+
     def _job(self, request: Request) -> Job:
         try:
             return self._house.store[request.path_params["id"]]
@@ -148,10 +198,14 @@ class _Pages:
             raise _NotFound from None
 
     def _file(self, request: Request, name: str, kind: str, *, download: bool = False) -> Response:
-        file = self._house.store.of(self._job(request)) / name
-        if not file.is_file():
-            raise _NotFound
-        return FileResponse(file, media_type=kind, filename=name if download else None)
+        return _file(self._house.store.of(self._job(request)) / name, kind, name=name if download else None)
+
+
+def _file(file: Path, kind: str, *, name: str | None = None) -> Response:
+    """name: to save it under. Errors: _NotFound."""
+    if not file.is_file():
+        raise _NotFound
+    return FileResponse(file, media_type=kind, filename=name)
 
 
 class _NotFound(Exception):

@@ -1,9 +1,9 @@
-"""What the page asks of a plan, as options of the command line: those that read no file and write none."""
+"""What the page asks of commands, as their options: of a plan, those that read no file and write none."""
 
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from planner.cli.plan import plan_parser
@@ -20,9 +20,9 @@ _VALUES = (
 _LONGEST = 200
 
 
-def arguments_of(asked: Mapping[str, Any], arms: Sequence[str]) -> list[str]:
-    """Options for `plan`. Each value is in one word with its option, so that none is taken for another. Errors:
-    UsageError for what is unknown, or means nothing."""
+def arguments_of(asked: Mapping[str, Any], arm_word: Callable[[object], str]) -> list[str]:
+    """Options for `plan`. Each value is in one word with its option, so that none is taken for another. arm_word: what
+    the command line takes for an arm's name. Errors: UsageError for what is unknown, or means nothing."""
     words: list[str] = []
     for name, value in asked.items():
         if name not in (*_PAIRS, *_SWITCHES, *_VALUES):
@@ -33,10 +33,10 @@ def arguments_of(asked: Mapping[str, Any], arms: Sequence[str]) -> list[str]:
             words.append(f"--{name}")
         elif name in _PAIRS:
             words += [f"--{name}", *_numbers(name, value)]
+        elif name == "arm":
+            words.append(f"--arm={arm_word(value)}")
         else:
             words.append(f"--{name}={_word(name, value)}")
-    if asked.get("arm") and asked["arm"] not in arms:
-        raise UsageError(f"there is no arm '{asked['arm']!s:.40}' here; there are {', '.join(arms)}")
     plan_parser().parse_args(["drawing.svg", *words])
     return words
 
@@ -44,6 +44,16 @@ def arguments_of(asked: Mapping[str, Any], arms: Sequence[str]) -> list[str]:
 def command_of(drawing: str, trajectory: str, words: Sequence[str]) -> str:
     """The same for a terminal."""
     return shlex.join(["plan", drawing, *words, "-o", trajectory])
+
+
+def port_words(asked: Mapping[str, Any]) -> list[str]:
+    """Where a controller is. Errors: UsageError."""
+    port = asked.get("port")
+    if not port:
+        return []
+    if not isinstance(port, str) or len(port) > _LONGEST:
+        raise UsageError("port is the name of a serial port")
+    return [f"--port={port}"]
 
 
 def _word(name: str, value: object) -> str:

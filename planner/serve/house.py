@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -10,13 +11,18 @@ from typing import Any
 from hardware.drivers.table import DRIVERS, SIMULATED, SIMULATORS
 from hardware.playback.journal import journal_path
 from hardware.playback.journal_entry import read_journal
-from planner.arms.arm_file import known_arms
 from planner.errors import PlannerError, UsageError
-from planner.serve.child import finished
+from planner.serve.arms import Arms
+from planner.serve.calibration import KEY, Calibration
 from planner.serve.feed import Feed
-from planner.serve.planning import VIEW, Planning
-from planner.serve.run import Arm
+from planner.serve.jog import Jog
+from planner.serve.planning import Planning
+from planner.serve.run import Arm, Playable
 from planner.serve.store import Job, State, Store
+from planner.serve.turn import Turn
+
+_MOST_RUNS = 20
+"""Whose ends are kept of a job."""
 
 
 class House:
@@ -26,19 +32,21 @@ class House:
         self.drivers = drivers
         self.store = Store(folder)
         self.feed = Feed()
+        self.arms = Arms(self.store.folder / "arms")
         self.planning = Planning(self.store, self.arms, self.tell_job)
-        self.arm = Arm(self.store, drivers, self._run_changed)
-        self._views: dict[str, asyncio.Task[str | None]] = {}
-
-    def arms(self) -> tuple[str, ...]:
-        return known_arms()
+        turn = Turn()
+        self.arm = Arm(drivers, turn, lambda: self.feed.changed("run", self.arm.state))
+        self.jog = Jog(self.store.folder, self.arms, drivers, turn, self._jog_changed, self._arms_changed)
+        self.calibration = Calibration(self.store.folder / KEY, self.arms, self._calibration_changed)
 
     def state(self) -> dict[str, Any]:
         """Everything, for a page that has just been opened."""
         return {
             "jobs": [self.job_state(job) for job in self.store],
             "run": self.arm.state(),
-            "arms": list(self.arms()),
+            "jog": self.jog.state(),
+            "calibration": self.calibration.state(),
+            "arms": list(self.arms.names()),
             "drivers": list(self.drivers),
             "simulators": list(SIMULATORS),
         }
@@ -55,40 +63,46 @@ class House:
 
     def remove(self, job: Job) -> None:
         """Errors: UsageError while it is being drawn."""
-        if self.arm.is_busy and self.arm.running.job == job.id:
-            raise UsageError(f"{job.name} is being drawn: stop that first")
+        self.refuse_while_drawn(job.id, job.name)
         self.planning.cancel(job)
         self.store.remove(job)
         self.tell_job(job)
 
-    async def arm_view(self, name: str) -> Path:
-        """The file of what the page shows of an arm, worked out once. Errors: UsageError."""
-        if name not in self.arms():
-            raise UsageError(f"there is no arm '{name:.40}'")
-        folder = self.store.folder / "arms"
-        folder.mkdir(exist_ok=True)
-        target = folder / f"{name}.view.json"
-        if name not in self._views:
-            self._views[name] = asyncio.create_task(finished(["arm", name, str(target)], folder, module=VIEW))
-        error = await self._views[name]
-        if error is not None:
-            raise UsageError(error)
-        return target
+    def refuse_while_drawn(self, key: str, name: str) -> None:
+        """Errors: UsageError."""
+        if self.arm.runs(key):
+            raise UsageError(f"{name} is being drawn: stop that first")
+
+    def run(self, job: Job, asked: Mapping[str, Any]) -> None:
+        """Errors: UsageError where it is not planned, and as `Arm.begin`."""
+        if job.state is not State.PLANNED or not self.store.trajectory(job).is_file():
+            raise UsageError(f"{job.name} is not planned yet")
+
+        def ended(how: str, complete: bool) -> None:
+            job.drawn = [*job.drawn, how][-_MOST_RUNS:]
+            self.store.keep(job)
+            self.tell_job(job)
+
+        self.arm.begin(Playable(job.id, job.name, self.store.of(job), job.trajectory_name, ended), asked)
 
     async def close(self) -> None:
         """The arm is parked and nothing runs any more."""
-        await asyncio.gather(self.arm.close(), self.planning.close())
-        for task in self._views.values():
-            task.cancel()
+        await asyncio.gather(self.arm.close(), self.jog.close(), self.planning.close(), self.calibration.close())
+        self.arms.close()
 
-    def _run_changed(self, job: Job | None) -> None:
-        self.feed.changed("run", self.arm.state)
-        if job is not None:
-            self.tell_job(job)
+    def _jog_changed(self) -> None:
+        self.feed.changed("jog", self.jog.state)
+
+    def _calibration_changed(self) -> None:
+        self.feed.changed("calibration", self.calibration.state)
+        self._arms_changed()
+
+    def _arms_changed(self) -> None:
+        self.feed.changed("arms", lambda: list(self.arms.names()))
 
     def _resumable(self, job: Job) -> str:
         """The driver whose run of it may go on, by the journal that the run has left; "" for none."""
-        if job.state is not State.PLANNED or (self.arm.is_busy and self.arm.running.job == job.id):
+        if job.state is not State.PLANNED or self.arm.runs(job.id):
             return ""
         for simulated in (False, True):
             try:

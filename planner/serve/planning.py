@@ -6,19 +6,19 @@ import asyncio
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from typing import Any
 
+from planner.serve.arms import VIEW, Arms
 from planner.serve.asked import arguments_of, command_of
 from planner.serve.child import Child, error_of, finished, follow, start
 from planner.serve.store import Job, State, Store
 
 LINES = "lines.json"
 MOTION = "motion.json"
-VIEW = "planner.serve.view"
 
 
 class Planning:
     """The work on jobs. changed: called with each job that has changed."""
 
-    def __init__(self, store: Store, arms: Callable[[], Sequence[str]], changed: Callable[[Job], None]) -> None:
+    def __init__(self, store: Store, arms: Arms, changed: Callable[[Job], None]) -> None:
         self._store, self._arms, self._changed = store, arms, changed
         self._turn = asyncio.Semaphore(1)
         self._tasks: dict[str, asyncio.Task[None]] = {}
@@ -31,7 +31,7 @@ class Planning:
     def plan(self, job: Job, asked: Mapping[str, Any]) -> None:
         """Begin to plan, in the place of what was being done with the job. Errors: UsageError for options that mean
         nothing."""
-        words = arguments_of(asked, self._arms())
+        words = arguments_of(asked, self._arms.word)
         job.options, job.command = dict(asked), command_of(job.name, job.trajectory_name, words)
         self._begin(job, State.PLANNING, self._plan(job, words))
 

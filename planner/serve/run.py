@@ -7,11 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
+from pathlib import Path
 from typing import Any
 
 from planner.errors import UsageError
+from planner.serve.asked import port_words
 from planner.serve.child import Child, error_of, follow, start
-from planner.serve.store import Job, State, Store
+from planner.serve.turn import Turn
 
 _PARKING_S = 120.0
 """What an arm may take to lift its pen and go home."""
@@ -38,13 +40,27 @@ class Wish(StrEnum):
     HOLD = "hold"
 
 
+@dataclass(frozen=True, slots=True)
+class Playable:
+    """What can be run. key: of the job, or of what else it belongs to. folder, file: where the trajectory is. options:
+    that such a run always has. ended: called with how a run of it did, and whether it drew all; not for a frame."""
+
+    key: str
+    name: str
+    folder: Path
+    file: str
+    ended: Callable[[str, bool], None]
+    options: tuple[str, ...] = ()
+
+
 @dataclass(slots=True)
 class Running:
-    """Where a run is. job: its id, "" before the first. sample: of the trajectory; pen: the one to be put in; ended:
-    how the last one did, and lines about it."""
+    """Where a run is. job: the key of what is run, "" before the first; name: of that. sample: of the trajectory; pen:
+    the one to be put in; ended: how the last one did, and lines about it."""
 
     stand: Stand = Stand.IDLE
     job: str = ""
+    name: str = ""
     driver: str = ""
     reached: int = 0
     total: int = 0
@@ -59,31 +75,28 @@ class Running:
 
 
 class Arm:
-    """changed: called when the run or its job has."""
+    """changed: called when the run has."""
 
-    def __init__(self, store: Store, drivers: Sequence[str], changed: Callable[[Job | None], None]) -> None:
-        self._store, self._drivers, self._changed = store, drivers, changed
+    def __init__(self, drivers: Sequence[str], turn: Turn, changed: Callable[[], None]) -> None:
+        self._drivers, self._turn, self._changed = drivers, turn, changed
         self.running = Running()
         self._child: Child | None = None
         self._task: asyncio.Task[None] | None = None
 
-    @property
-    def is_busy(self) -> bool:
-        return self._task is not None
+    def runs(self, key: str) -> bool:
+        """Whether this is being run."""
+        return self._task is not None and self.running.job == key
 
     def state(self) -> dict[str, Any]:
         return asdict(self.running)
 
-    def begin(self, job: Job, asked: Mapping[str, Any]) -> None:
-        """Errors: UsageError where the arm is busy, there is nothing to draw, or what is asked means nothing."""
-        words = self._arguments(asked)
-        if self.is_busy:
-            raise UsageError("the arm is drawing: stop that first")
-        if job.state is not State.PLANNED or not self._store.trajectory(job).is_file():
-            raise UsageError(f"{job.name} is not planned yet")
-        self.running = Running(Stand.STARTING, job.id, str(asked.get("driver", "sim")))
-        self._task = asyncio.get_running_loop().create_task(self._run(job, words))
-        self._changed(None)
+    def begin(self, what: Playable, asked: Mapping[str, Any]) -> None:
+        """Errors: UsageError where the arm is busy, or what is asked means nothing."""
+        words = [*what.options, *self._arguments(asked)]
+        self._turn.take("drawing")
+        self.running = Running(Stand.STARTING, what.key, what.name, str(asked.get("driver", "sim")))
+        self._task = asyncio.get_running_loop().create_task(self._run(what, words))
+        self._changed()
 
     def wish(self, wish: Wish) -> None:
         """Errors: UsageError where nothing runs."""
@@ -121,12 +134,7 @@ class Arm:
         driver = asked.get("driver", "sim")
         if driver not in self._drivers:
             raise UsageError(f"there is no driver '{driver!s:.40}' here; there are {', '.join(self._drivers)}")
-        words = [f"--driver={driver}"]
-        port = asked.get("port")
-        if port:
-            if not isinstance(port, str) or len(port) > 200:
-                raise UsageError("port is the name of a serial port")
-            words.append(f"--port={port}")
+        words = [f"--driver={driver}", *port_words(asked)]
         factor = asked.get("speed-factor")
         if factor is not None:
             if isinstance(factor, bool) or not isinstance(factor, int | float):
@@ -135,13 +143,11 @@ class Arm:
         words += [f"--{name}" for name in ("resume", "frame", "fast") if asked.get(name) is True]
         return words
 
-    async def _run(self, job: Job, words: Sequence[str]) -> None:
+    async def _run(self, what: Playable, words: Sequence[str]) -> None:
         running = self.running
         child: Child | None = None
         try:
-            child = await start(
-                ["run", job.trajectory_name, "--events", *words], self._store.of(job), behind=False, keys=True
-            )
+            child = await start(["run", what.file, "--events", *words], what.folder, behind=False, keys=True)
             self._child = child
             code = await follow(child, self._told)
             if not running.ended:
@@ -156,12 +162,11 @@ class Arm:
             running.ended = str(error)
         finally:
             self._child = self._task = None
+            self._turn.give_back()
             running.stand, running.pen = Stand.IDLE, ""
             if "--frame" not in words:
-                job.drawn.append(running.ended)
-                del job.drawn[:-20]
-                self._store.keep(job)
-            self._changed(job)
+                what.ended(running.ended, running.complete)
+            self._changed()
 
     def _told(self, event: dict[str, Any]) -> None:
         running = self.running
@@ -180,8 +185,8 @@ class Arm:
             case "ended":
                 running.ended, running.complete = str(event["how"]), bool(event["complete"])
                 running.lines = [str(line) for line in event["summary"]]
-        self._changed(None)
+        self._changed()
 
     def _stand(self, stand: Stand) -> None:
         self.running.stand = stand
-        self._changed(None)
+        self._changed()
