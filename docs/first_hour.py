@@ -42,20 +42,7 @@ def first_hour(drawing: Path) -> None:
     """Everything from the printed sheet to the calibrated drawing, in the current folder."""
     run("pattern", "--arm", ARM, "-o", "pattern.csv", "--marks", "marks.csv", "--sheet", "sheet.pdf")
     run("run", "pattern.csv", "--fast", "--record", "pulses.csv", "--quiet")
-    arm = load_arm(ARM)
-    true_arm = as_file(arm, random_arm(arm, np.random.default_rng(_SEED)))
-    marks, record = read_marks(Path("marks.csv")), read_record(Path("pulses.csv"), arm)
-    tip_mm = tips_of(arm, true_arm, record)
-    at_marks = np.searchsorted(record.times_s, [mark.t_s for mark in marks])
-    depth_mm = Heights.for_arm(arm).reach_mm  # that marks are meant to have
-    jogged_mm = tip_mm[at_marks, 2].mean() + depth_mm  # with a card, plan jog finds the paper's height
-    true_arm = paper_under(true_arm, np.array([0.0, 0.0, jogged_mm]), 0.0)
-    tip_mm[:, 2] -= jogged_mm
-    Path("true.toml").write_text(arm_toml(true_arm), encoding="utf-8")
-    layout = write_sheet(Path("sheet.pdf"), arm.name, marks)
-    ink = [Ink(trace.points_mm, trace.width_mm) for trace in traces(tip_mm, record.period_s)]
-    sheet = drawn_sheet(Path("sheet.pdf"), layout.origin_page_mm, ink)
-    cv2.imwrite("photo.jpg", photograph(sheet, Camera(tilt_deg=24, roll_deg=3, shadows=1, shadow_depth=0.2)))
+    Path("true.toml").write_text(arm_toml(photographed(Path())), encoding="utf-8")
     run("measure", "photo.jpg", "--marks", "marks.csv", "-o", "measured.csv", "--picture", "reading.png", "--quiet")
     run("calibrate", ARM, "--record", "pulses.csv", "--marks", "measured.csv", "-o", "my_arm_2.toml")
     for name, planned_for in (("before", ARM), ("after", "my_arm_2.toml")):
@@ -63,6 +50,25 @@ def first_hour(drawing: Path) -> None:
         rehearsal = ["--fast", "--servos", "real", "--true-arm", "true.toml", "--quiet"]
         run("run", f"{name}.csv", *rehearsal, "--picture", f"{name}.png")
         run("predict", f"{name}.csv", "--plot", f"predicted_{name}.png")
+
+
+def photographed(folder: Path) -> Arm:
+    """Lays ink on the sheet of the pattern that was run in a folder, and leaves photo.jpg there; the arm that drew."""
+    arm = load_arm(ARM)
+    true_arm = as_file(arm, random_arm(arm, np.random.default_rng(_SEED)))
+    marks, record = read_marks(folder / "marks.csv"), read_record(folder / "pulses.csv", arm)
+    tip_mm = tips_of(arm, true_arm, record)
+    at_marks = np.searchsorted(record.times_s, [mark.t_s for mark in marks])
+    depth_mm = Heights.for_arm(arm).reach_mm  # that marks are meant to have
+    jogged_mm = tip_mm[at_marks, 2].mean() + depth_mm  # with a card, plan jog finds the paper's height
+    true_arm = paper_under(true_arm, np.array([0.0, 0.0, jogged_mm]), 0.0)
+    tip_mm[:, 2] -= jogged_mm
+    layout = write_sheet(folder / "sheet.pdf", arm.name, marks)
+    ink = [Ink(trace.points_mm, trace.width_mm) for trace in traces(tip_mm, record.period_s)]
+    sheet = drawn_sheet(folder / "sheet.pdf", layout.origin_page_mm, ink)
+    photo = photograph(sheet, Camera(tilt_deg=24, roll_deg=3, shadows=1, shadow_depth=0.2))
+    cv2.imwrite(str(folder / "photo.jpg"), photo)
+    return true_arm
 
 
 def as_file(arm: Arm, true: TrueArm) -> Arm:

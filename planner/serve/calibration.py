@@ -45,11 +45,12 @@ class Walk:
 
 
 class Calibration:
-    """One walk at a time, in a folder that outlives the server. changed: called when it has. Errors: OutputError where
-    the folder cannot be had."""
+    """One walk at a time, in a folder that outlives the server. changed: called when it has. arm_saved: when an arm
+    file has been written. Errors: OutputError where the folder cannot be had."""
 
-    def __init__(self, folder: Path, arms: Arms, changed: Callable[[], None]) -> None:
-        self.folder, self._arms, self._changed = folder, arms, changed
+    def __init__(self, folder: Path, arms: Arms, changed: Callable[[], None], arm_saved: Callable[[], None]) -> None:
+        self.folder, self._arms = folder, arms
+        self._changed, self._arm_saved = changed, arm_saved
         self._task: asyncio.Task[None] | None = None
         try:
             folder.mkdir(exist_ok=True)
@@ -140,7 +141,9 @@ class Calibration:
                 walk.failed, walk.error = name, error_of(child, code)
             else:
                 walk.said[name] = [*_without_files(printed), *_without_files(child.notes)]
-                walk.target = target or walk.target
+                if target:
+                    walk.target = target
+                    self._arm_saved()
                 walk.readings += name == "measure"
         except OSError as error:
             walk.failed, walk.error = name, str(error)

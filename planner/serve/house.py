@@ -37,7 +37,9 @@ class House:
         turn = Turn()
         self.arm = Arm(drivers, turn, lambda: self.feed.changed("run", self.arm.state))
         self.jog = Jog(self.store.folder, self.arms, drivers, turn, self._jog_changed, self._arms_changed)
-        self.calibration = Calibration(self.store.folder / KEY, self.arms, self._calibration_changed)
+        self.calibration = Calibration(
+            self.store.folder / KEY, self.arms, self._calibration_changed, self._arms_changed
+        )
 
     def state(self) -> dict[str, Any]:
         """Everything, for a page that has just been opened."""
@@ -95,7 +97,6 @@ class House:
 
     def _calibration_changed(self) -> None:
         self.feed.changed("calibration", self.calibration.state)
-        self._arms_changed()
 
     def _arms_changed(self) -> None:
         self.feed.changed("arms", lambda: list(self.arms.names()))

@@ -135,7 +135,7 @@ class Jog:
             self._child, self._waiting = child, 0
             code = await follow(child, self._told)
             jogged.ended = jogged.ended or (error_of(child, code) if code else "done: the arm holds")
-            jogged.lines = [note for note in child.notes if not note.startswith("error: ")]
+            jogged.lines = [note for note in child.notes if note != "interrupted" and not note.startswith("error: ")]
         except asyncio.CancelledError:
             jogged.ended = "stopped"
             if child is not None:

@@ -18,18 +18,20 @@ export const post = (path, asked = {}) =>
 export const remove = (path) =>
   answer(path, { method: "DELETE", headers: { "Content-Type": "application/json" } });
 
-export const upload = (file) =>
-  answer(`/api/jobs?name=${encodeURIComponent(file.name)}`, {
+/** more: further words of the address. */
+export const upload = (file, path = "/api/jobs", more = {}) =>
+  answer(`${path}?${new URLSearchParams({ name: file.name, ...more })}`, {
     method: "POST",
     headers: { "Content-Type": "application/octet-stream" },
     body: file,
   });
 
-/** Calls back with each part of the state that changes, and with whether the server answers. */
-export function watch({ onJob, onRun, onConnected, onLost }) {
+/** Calls back with each part of the state that changes, by its name, and with whether the server answers. */
+export function watch(parts, { onConnected, onLost }) {
   const source = new EventSource("/api/events");
-  source.addEventListener("job", (event) => onJob(JSON.parse(event.data)));
-  source.addEventListener("run", (event) => onRun(JSON.parse(event.data)));
+  for (const [name, changed] of Object.entries(parts)) {
+    source.addEventListener(name, (event) => changed(JSON.parse(event.data)));
+  }
   source.addEventListener("open", onConnected);
   source.addEventListener("error", onLost);
 }

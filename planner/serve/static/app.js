@@ -2,12 +2,14 @@
 
 import { get, post, remove, upload, watch } from "./api.js";
 import { ArmView } from "./arm_view.js";
+import { CalibrationPage } from "./calibration_page.js";
+import { $, element, item, offer, say, tried } from "./dom.js";
 import { unpacked } from "./film.js";
+import { JogPage } from "./jog_page.js";
 import { JointsView } from "./joints_view.js";
 import { canvasOf } from "./placement.js";
 import { Sheet } from "./sheet.js";
 
-const $ = (id) => document.getElementById(id);
 const form = $("options");
 const field = (name) => form.elements[name];
 const NUMBERS = ["margin", "rotate", "fill-spacing", "passes", "tolerance", "speed", "lift", "join", "rate"];
@@ -29,6 +31,8 @@ const sheet = new Sheet($("sheet"), (moved) => {
 });
 const armView = new ArmView($("arm-view"), $("arm-says"));
 const jointsView = new JointsView($("joints-view"));
+const jogPage = new JogPage();
+const calibrationPage = new CalibrationPage();
 
 // -- options --------------------------------------------------------------------------------------------------------
 
@@ -128,8 +132,11 @@ async function showLines(job) {
 
 async function showArm() {
   const name = $("arm").value;
-  if (sheet.arm?.name !== name) $("sheet-says").textContent = `Working out what ${name} reaches …`;
-  if (!arms.has(name)) arms.set(name, get(`/api/arms/${name}`).catch((error) => ({ name, refusal: error.message })));
+  if (sheet.arm?.chosen !== name) $("sheet-says").textContent = `Working out what ${name} reaches …`;
+  if (!arms.has(name)) {
+    const found = get(`/api/arms/${name}`).catch((error) => ({ name, refusal: error.message }));
+    arms.set(name, found.then((arm) => ({ ...arm, chosen: name })));
+  }
   const arm = await arms.get(name);
   if (name === $("arm").value && sheet.arm !== arm) {
     sheet.show({ arm });
@@ -185,12 +192,6 @@ function showJob(job) {
   $("resume").hidden = !job.resumable;
 }
 
-function item(text) {
-  const li = document.createElement("li");
-  li.textContent = text;
-  return li;
-}
-
 const STANDS = {
   idle: "", starting: "connecting", playing: "drawing", paused: "paused, pen up", "awaiting pen": "waiting for a pen",
   stopping: "stopping",
@@ -210,7 +211,7 @@ function drawJobs() {
     choice.addEventListener("click", () => choose(job.id));
     const away = Object.assign(document.createElement("button"), { type: "button", textContent: "×", title: "Throw away" });
     away.setAttribute("aria-label", `Throw away ${job.name}`);
-    away.addEventListener("click", () => tried("plan-says", () => remove(`/api/jobs/${job.id}`)));
+    away.addEventListener("click", () => tried($("plan-says"), () => remove(`/api/jobs/${job.id}`)));
     li.append(choice, away);
     return li;
   });
@@ -219,21 +220,11 @@ function drawJobs() {
 
 async function add(files) {
   for (const file of files) {
-    await tried("plan-says", async () => {
+    await tried($("plan-says"), async () => {
       const job = await upload(file);
       jobs.set(job.id, job);
       await choose(job.id);
     });
-  }
-}
-
-/** Does something, and says what was wrong with it if it is refused. */
-async function tried(id, work) {
-  try {
-    await work();
-  } catch (error) {
-    $(id).className = "bad";
-    $(id).textContent = error.message;
   }
 }
 
@@ -291,17 +282,21 @@ function runChanged(now) {
   const before = run;
   run = now;
   const runs = run.stand !== "idle";
-  const name = jobs.get(run.job)?.name ?? "";
+  const { name } = run;
   const left = run.left_s > 60 ? `${Math.round(run.left_s / 60)} min` : `${Math.round(run.left_s)} s`;
   const share = run.total ? `, ${Math.floor((100 * run.reached) / run.total)} %, ${left} left` : "";
-  const standing = runs ? `${name}: ${STANDS[run.stand]}${share}` : run.ended ? `${name}: ${run.ended}` : "";
-  if ($("standing").textContent !== standing) $("standing").textContent = standing;
+  const jogs = jogPage.runs;
+  const standing = jogs ? `jogging ${jogPage.jog.arm}`
+    : runs ? `${name}: ${STANDS[run.stand]}${share}`
+    : run.ended ? `${name}: ${run.ended}` : "";
+  say($("standing"), standing);
   $("pause").hidden = !["playing", "paused"].includes(run.stand);
   $("pause").textContent = run.stand === "paused" ? "Go on" : "Pause";
   $("pen").hidden = run.stand !== "awaiting pen";
   $("pen").textContent = `${run.pen} is in: go on`;
-  $("stop").hidden = $("hold").hidden = !runs;
-  $("run").disabled = $("resume").disabled = $("frame").disabled = runs;
+  $("stop").hidden = !runs;
+  $("hold").hidden = !runs && !jogs;
+  for (const id of ["run", "resume", "frame"]) $(id).disabled = runs || jogs;
   if (run.job === current) {
     $("run-says").className = !runs && run.ended ? (run.complete ? "good" : "bad") : "";
     $("run-says").textContent = runs ? STANDS[run.stand] : run.ended;
@@ -314,8 +309,13 @@ function runChanged(now) {
   if (before?.stand !== run.stand) drawJobs();
 }
 
+function jogChanged(jog) {
+  jogPage.show(jog);
+  if (run) runChanged(run);
+}
+
 function begin(more) {
-  return tried("run-says", async () => {
+  return tried($("run-says"), async () => {
     const driver = $("driver").value;
     const options = { driver, "speed-factor": Number($("speed-factor").value), ...more };
     if ($("port").value && !simulators.includes(driver)) options.port = $("port").value;
@@ -323,25 +323,46 @@ function begin(more) {
   });
 }
 
-const wish = (name) => tried("run-says", async () => runChanged(await post(`/api/run/${name}`)));
+const wish = (name) => tried($("run-says"), async () => runChanged(await post(`/api/run/${name}`)));
 
 // -- everything together --------------------------------------------------------------------------------------------
 
-let simulators = [];
+let [drivers, simulators] = [[], []];
+
+/** One may have been saved anew under its name. */
+function armsChanged(names) {
+  arms.clear();
+  offer($("arm"), names);
+  jogPage.offer(names, drivers, simulators);
+  calibrationPage.offer(names, drivers, simulators);
+  return showArm();
+}
+
+function page() {
+  const name = ["draw", "jog", "calibrate"].find((each) => location.hash === `#${each}`) ?? "draw";
+  for (const each of ["draw", "jog", "calibrate"]) $(`page-${each}`).hidden = each !== name;
+  for (const link of document.querySelectorAll(".pages a")) {
+    if (link.hash === `#${name}`) link.setAttribute("aria-current", "page");
+    else link.removeAttribute("aria-current");
+  }
+  document.querySelector(".skip").hidden = name !== "draw";
+  sheet.draw();
+  armView.draw();
+  jointsView.draw();
+}
 
 async function start() {
   const state = await get("/api/state");
   simulators = state.simulators;
-  const option = (name) => Object.assign(document.createElement("option"), { textContent: name });
-  const chosen = $("arm").value;
-  $("arm").replaceChildren(...state.arms.map(option));
-  if (state.arms.includes(chosen)) $("arm").value = chosen;
-  $("driver").replaceChildren(...state.drivers.map(option));
+  drivers = state.drivers;
+  offer($("driver"), drivers);
+  armsChanged(state.arms);
+  calibrationPage.show(state.calibration);
   jobs.clear();
   for (const job of state.jobs) jobs.set(job.id, job);
   run = state.run;
   await choose(jobs.has(current) ? current : jobs.has(run.job) ? run.job : [...jobs.keys()].at(-1) ?? null);
-  runChanged(state.run);
+  jogChanged(state.jog);
 }
 
 function tab(name) {
@@ -389,13 +410,13 @@ form.addEventListener("input", (event) => {
 form.addEventListener("submit", (event) => {
   event.preventDefault();
   if (!current) return void ($("plan-says").textContent = "Drop a drawing first.");
-  tried("plan-says", async () => jobChanged(await post(`/api/jobs/${current}/plan`, asked())));
+  tried($("plan-says"), async () => jobChanged(await post(`/api/jobs/${current}/plan`, asked())));
 });
 $("fit").addEventListener("click", () => {
   for (const name of ["at-x", "at-y", "scale"]) field(name).value = "";
   placeChanged();
 });
-$("cancel").addEventListener("click", () => tried("plan-says", () => post(`/api/jobs/${current}/cancel`)));
+$("cancel").addEventListener("click", () => tried($("plan-says"), () => post(`/api/jobs/${current}/cancel`)));
 $("copy").addEventListener("click", () => navigator.clipboard?.writeText($("command").textContent));
 $("show-map").addEventListener("change", (event) => {
   sheet.showsMap = event.target.checked;
@@ -409,18 +430,28 @@ $("time").addEventListener("input", (event) => {
 $("run").addEventListener("click", () => begin({}));
 $("resume").addEventListener("click", () => begin({ resume: true, driver: jobs.get(current).resumable }));
 $("frame").addEventListener("click", () => begin({ frame: true }));
-$("port").addEventListener("focus", async () => {
-  const found = await get("/api/ports").catch(() => []);
-  $("ports").replaceChildren(...found.map(({ port, likely }) => Object.assign(document.createElement("option"), { value: port, label: likely })));
-});
+for (const id of ["port", "jog-port", "walk-port"]) {
+  $(id).addEventListener("focus", async () => {
+    const found = await get("/api/ports").catch(() => []);
+    $("ports").replaceChildren(...found.map(({ port, likely }) => element("option", "", { value: port, label: likely })));
+  });
+}
 $("pause").addEventListener("click", () => wish(run.stand === "paused" ? "resume" : "pause"));
 $("pen").addEventListener("click", () => wish("pen"));
 $("stop").addEventListener("click", () => wish("stop"));
-$("hold").addEventListener("click", () => wish("hold"));
+$("hold").addEventListener("click", () => (jogPage.runs ? tried($("jog-says"), () => post("/api/jog/stop")) : wish("hold")));
 
-watch({
-  onJob: jobChanged,
-  onRun: runChanged,
+addEventListener("hashchange", page);
+page();
+
+const parts = {
+  job: jobChanged,
+  run: runChanged,
+  jog: jogChanged,
+  calibration: (walk) => calibrationPage.show(walk),
+  arms: armsChanged,
+};
+watch(parts, {
   onConnected: () => {
     $("lost").hidden = true;
     start().catch((error) => ($("plan-says").textContent = error.message));

@@ -1,0 +1,31 @@
+// Small things that all pages of the house need.
+
+export const $ = (id) => document.getElementById(id);
+
+export function element(name, text = "", more = {}) {
+  return Object.assign(document.createElement(name), { textContent: text, ...more });
+}
+
+export const item = (text) => element("li", text);
+
+/** Says something where it is not said already, so that screen readers are not told twice. */
+export function say(place, text, kind = "") {
+  if (place.textContent !== text) place.textContent = text;
+  if (place.className !== kind) place.className = kind;
+}
+
+/** Does something, and says what was wrong with it if it is refused. */
+export async function tried(place, work) {
+  try {
+    await work();
+  } catch (error) {
+    say(place, error.message, "bad");
+  }
+}
+
+/** Offers names to choose from, and keeps what was chosen where that is still there. */
+export function offer(select, names) {
+  const chosen = select.value;
+  select.replaceChildren(...names.map((name) => element("option", name)));
+  if (names.includes(chosen)) select.value = chosen;
+}
