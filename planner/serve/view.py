@@ -16,38 +16,44 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
 from planner.arms.description import arm_description
+from planner.arms.usual_servos import describes_servos
 from planner.arrays import FloatArray
+from planner.error_model.over_paper import expected_error
 from planner.errors import PlanError, PlannerError
 from planner.files import written_aside
+from planner.kinematics.sensitivity import sideways_error
 from planner.pens import hex_of
 from planner.pictures import motion_for_film
 from planner.plots.player import film_of
 from planner.redundancy.arm_model import ArmModel
 from planner.trajectory import Trajectory, read_trajectory
-from planner.workspace.paper_map import paper_map
+from planner.workspace.paper_map import paper_nodes
 from planner.workspace.reach import paper_in_reach
 
 _MOST_POSES = 20_000
 
 
 def arm_view(arm: Arm) -> dict[str, Any]:
-    """The arm's description with its canvas, its home, and how far the tip strays over its paper, mm for each degree,
-    null out of reach. Plain values for JSON."""
+    """The arm's description with its canvas, its home, and a map of its error over the paper, null out of reach: what
+    is expected, mm, where the file says how joints are moved, else mm for each degree that a joint is off. Plain values
+    for JSON."""
     model = ArmModel(arm)
     try:
-        paper, over_paper = paper_in_reach(model), paper_map(model)
+        paper, nodes = paper_in_reach(model), paper_nodes(model)
     except PlanError as error:
         return arm_description(arm) | {"canvas_mm": None, "refusal": str(error)}
-    strays = over_paper.sideways_error_mm
+    figure = expected_error if describes_servos(arm) else sideways_error
+    over_paper = nodes.map_of(figure(arm, nodes.joints))
     home = arm.complete(model.configuration_map().home[None])
     return arm_description(arm) | {
         "canvas_mm": paper.corners_arm_mm.round(3).tolist(),
         "reach_mm": [round(edge, 3) for edge in paper.reach_mm],
         "home": (home[0] / arm.per_file_unit).round(4).tolist(),
         "map": {
-            "x_mm": over_paper.x_mm.round(2).tolist(),
-            "y_mm": over_paper.y_mm.round(2).tolist(),
-            "strays_mm": [[None if np.isnan(cell) else round(float(cell), 4) for cell in row] for row in strays],
+            "x_mm": nodes.x_mm.round(2).tolist(),
+            "y_mm": nodes.y_mm.round(2).tolist(),
+            "error_mm": [[None if np.isnan(cell) else round(float(cell), 4) for cell in row] for row in over_paper],
+            "is_expected": describes_servos(arm),
         },
     }
 

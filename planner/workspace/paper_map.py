@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arrays import FloatArray
+from planner.arrays import BoolArray, FloatArray
 from planner.kinematics.sensitivity import sideways_error
 from planner.kinematics.singularity import manipulability
 from planner.redundancy.arm_model import ArmModel
@@ -32,8 +32,30 @@ class PaperMap:
     sideways_error_mm: FloatArray
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class PaperNodes:
+    """The nodes of such a grid: places (n, m), the configurations that lines are drawn in there
+    (n m, n_joints), row by row, and which of them the arm gets to (n m,)."""
+
+    x_mm: FloatArray
+    y_mm: FloatArray
+    joints: FloatArray
+    kept: BoolArray
+
+    def map_of(self, figures: FloatArray) -> FloatArray:
+        """(n, m) of figures (n m,), NaN where the arm does not get to."""
+        return np.where(self.kept, figures, np.nan).reshape(self.x_mm.shape)
+
+
 def paper_map(model: ArmModel) -> PaperMap:
     """The map of an arm. Errors: PlanError where the arm cannot draw."""
+    arm, nodes = model.arm, paper_nodes(model)
+    figures = (nodes.map_of(figure(arm, nodes.joints)) for figure in (manipulability, sideways_error))
+    return PaperMap(nodes.x_mm, nodes.y_mm, *figures)
+
+
+def paper_nodes(model: ArmModel) -> PaperNodes:
+    """Errors: PlanError where the arm cannot draw."""
     arm, branches = model.arm, model.branches()
     x, y = _half_ring(model.rings()) if model.rings() else _square(branches)
     tips = np.column_stack((x.ravel(), y.ravel(), np.zeros(x.size)))
@@ -44,11 +66,7 @@ def paper_map(model: ArmModel) -> PaperMap:
         independent[rest], kept[rest] = branch.configurations_at(tips[rest])
         if not model.rings():
             kept[rest] &= branch.reaches(tips[rest, :2])
-    joints = arm.complete(independent)
-    figures = (
-        np.where(kept, figure(arm, joints), np.nan).reshape(x.shape) for figure in (manipulability, sideways_error)
-    )
-    return PaperMap(x, y, *figures)
+    return PaperNodes(x, y, arm.complete(independent), kept)
 
 
 def _half_ring(rings: Sequence[RingMap]) -> tuple[FloatArray, FloatArray]:
