@@ -15,7 +15,8 @@ _VALUES = (
     "arm", "method", "weights", "rate", "tolerance", "speed", "lift", "lowering-speed", "dwell", "canvas", "place",
     "scale", "paper", "orientation", "align", "origin", "margin", "rotate", "copies", "layers", "by", "join",
     "dedup", "simplify", "min-length", "passes", "fill", "fill-angle", "fill-spacing", "fill-inset", "fill-by",
-    "stroke-width", "text", "crop", "dpi",
+    "stroke-width", "text", "crop", "dpi", "image", "image-line", "image-detail", "image-ink", "image-levels",
+    "image-angle",
 )  # fmt: skip
 _LONGEST = 200
 

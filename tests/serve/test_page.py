@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import re
@@ -9,7 +10,9 @@ from collections.abc import Iterator
 from importlib import resources
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from benchmarks.browser.chromium import executable
@@ -18,6 +21,13 @@ from tests.serve.served import PAGE, SQUARE, Server
 TWO_PENS = (
     b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 60" width="60mm" height="60mm" fill="none">'
     b'<path d="M10 10 H50" stroke="#0050c8"/><path d="M10 30 H50" stroke="#c02000"/></svg>'
+)
+LAYERS = (
+    b'<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" '
+    b'viewBox="0 0 60 60" width="60mm" height="60mm" fill="none"><g inkscape:groupmode="layer" inkscape:label="sea">'
+    b'<path d="M10 10 H50" stroke="#0050c8"/></g><g inkscape:groupmode="layer" inkscape:label="2 land">'
+    b'<path d="M10 30 H50" stroke="#c02000"/></g><g inkscape:groupmode="layer" inkscape:label="%notes">'
+    b'<path d="M10 50 H50" stroke="#208020"/></g></svg>'
 )
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 PHONE = {"width": 360, "height": 740}
@@ -188,6 +198,81 @@ def test_pens_are_asked_for_and_put_in(page: Page) -> None:
     expect(page.locator("#standing")).to_contain_text("played", timeout=SLOW_MS)
 
 
+def test_layers_are_chosen_and_their_pens_are_shown(page: Page, server: Server) -> None:
+    give(page, LAYERS, "map.svg")
+    boxes = {name: page.get_by_role("checkbox", name=name, exact=True) for name in ("sea", "2 land", "%notes")}
+    assert [box.is_checked() for box in boxes.values()] == [True, True, False]
+    boxes["sea"].uncheck()
+    boxes["%notes"].check()
+    page.select_option("[name=by]", "layer")
+    plan(page)
+    job = server.get("/api/state")["jobs"][-1]
+    assert job["options"]["layers"] == "2 land,%notes"
+    expect(page.locator("#pens li")).to_have_text(["2 land", "%notes"])
+    page.reload()
+    expect(page.get_by_role("checkbox", name="sea", exact=True)).not_to_be_checked(timeout=SLOW_MS)
+    expect(page.get_by_role("checkbox", name="%notes", exact=True)).to_be_checked()
+
+
+def test_the_map_says_what_it_shows(page: Page) -> None:
+    page.check("#show-map")
+    page.select_option("#arm", "scara")
+    expect(page.locator("#map-of")).to_contain_text("each degree", timeout=SLOW_MS)
+    page.select_option("#arm", "drawing_arm_2022")
+    expect(page.locator("#map-of")).to_contain_text("expected", timeout=SLOW_MS)
+    least, most = (float(page.locator(f"#map-{end}").inner_text().split()[0]) for end in ("least", "most"))
+    assert 1 < least < most < 20
+
+
+def test_a_picture_is_dropped_and_drawn(page: Page, server: Server) -> None:
+    shades = np.tile(np.linspace(0, 255, 40, dtype=np.uint8), (30, 1))
+    picture = io.BytesIO()
+    Image.fromarray(shades).save(picture, "PNG")
+    give(page, picture.getvalue(), "shades.png")
+    expect(page.locator("#picture-box")).to_be_visible()
+    page.select_option("[name=image]", "stipple")
+    page.fill("[name=image-line]", "1")
+    plan(page)
+    assert server.get("/api/state")["jobs"][-1]["options"]["image"] == "stipple"
+
+
+def test_joints_are_jogged_and_held_at_once_from_every_page(page: Page, browser: Browser, server: Server) -> None:
+    page.click("text=Jog")
+    page.select_option("#jog-arm", "so101")
+    page.fill("#jog-target", "found")
+    page.click("#jog-start")
+    joint = page.locator("#jog-joints li").first
+    expect(joint).to_be_visible(timeout=SLOW_MS)
+    before = joint.locator(".at").inner_text()
+    page.select_option("#jog-step", "5")
+    joint.get_by_role("button", name="more").click()
+    expect(joint.locator(".at")).not_to_have_text(before)
+    joint.get_by_role("button", name="upper limit").click()
+    expect(page.locator("#jog-says")).to_contain_text("not saved")
+    joint.get_by_role("button", name="more").click()
+    expect(page.locator("#jog-says")).to_have_class("bad")
+    page.click("text=Save the arm")
+    expect(page.locator("#arm")).to_contain_text("found")
+    other = browser.new_page(viewport=PHONE)
+    other.goto(server.address)
+    other.locator("#hold").click()
+    expect(page.locator("#jog-says")).to_contain_text("holds where it is")
+    other.close()
+
+
+def test_the_calibration_walk_begins_and_leads_on(page: Page) -> None:
+    page.click("text=Calibrate")
+    page.select_option("#walk-arm", "drawing_arm_2022")
+    page.fill("#walk-count", "12")
+    expect(page.locator("#walk-draw")).to_be_disabled()
+    page.click("text=Make a pattern")
+    expect(page.locator("#walk-sheet")).to_be_visible(timeout=SLOW_MS)
+    page.click("#walk-draw")
+    expect(page.locator("#walk-drawn")).to_contain_text("played", timeout=SLOW_MS)
+    page.set_input_files("#walk-photo", {"name": "x.png", "mimeType": "image/png", "buffer": b"no picture"})
+    expect(page.locator("#walk-says")).to_have_class("bad", timeout=SLOW_MS)
+
+
 def test_a_second_page_sees_and_stops_what_the_first_began(page: Page, browser: Browser, server: Server) -> None:
     give(page)
     plan(page)
@@ -218,11 +303,16 @@ def test_people_with_any_senses_can_use_it(browser: Browser, server: Server, vie
     page.goto(server.address)
     give(page)
     plan(page)
-    for view in ("sheet", "arm", "joints"):
-        page.click(f"#tab-{view}")
+    for view in ("#tab-sheet", "#tab-arm", "#tab-joints", "text=Jog", "text=Calibrate"):
+        page.click(view)
+        if view == "text=Jog":
+            page.click("#jog-start")
+            expect(page.locator("#jog-joints li").first).to_be_visible(timeout=SLOW_MS)
         page.evaluate(AXE)
         found = page.evaluate("axe.run()")
         serious = [fault for fault in found["violations"] if fault["impact"] in ("serious", "critical")]
         assert not serious, json.dumps(serious, indent=1)[:3000]
-    assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), view
+    page.click("#hold")
+    expect(page.locator("#standing")).not_to_contain_text("jogging", timeout=SLOW_MS)
     page.close()

@@ -7,19 +7,19 @@ import { $, element, item, offer, say, tried } from "./dom.js";
 import { unpacked } from "./film.js";
 import { JogPage } from "./jog_page.js";
 import { JointsView } from "./joints_view.js";
-import { canvasOf } from "./placement.js";
+import { Layers, showPens } from "./layers.js";
 import { Sheet } from "./sheet.js";
 
 const form = $("options");
 const field = (name) => form.elements[name];
-const NUMBERS = ["margin", "rotate", "fill-spacing", "passes", "tolerance", "speed", "lift", "join", "rate"];
-const CHOICES = ["paper", "by", "layers", "fill", "text", "method"];
+const NUMBERS = ["margin", "rotate", "fill-spacing", "passes", "tolerance", "speed", "lift", "join", "rate", "image-line", "image-detail", "image-levels"];
+const CHOICES = ["paper", "by", "fill", "text", "method", "image"];
 const SWITCHES = ["mirror", "skip-unreachable"];
 
 const jobs = new Map();
 const arms = new Map();
 const lines = new Map();
-let [current, run, film, filmOf] = [null, null, null, null];
+let [current, run, film, filmOf, linesOf] = [null, null, null, null, null];
 let [time, plays, last] = [0, false, 0];
 
 const sheet = new Sheet($("sheet"), (moved) => {
@@ -27,6 +27,10 @@ const sheet = new Sheet($("sheet"), (moved) => {
   field("at-y").value = moved ? moved.at[1] : "";
   field("scale").value = moved ? Number((100 * moved.scale).toFixed(3)) : "";
   field("rotate").value = moved ? moved.rotate : 0;
+  placeChanged();
+});
+const layers = new Layers($("layers"), () => {
+  sheet.show({ lines: layers.of(lines.get(current)) });
   placeChanged();
 });
 const armView = new ArmView($("arm-view"), $("arm-says"));
@@ -61,6 +65,7 @@ function asked() {
     const value = numberIn(name);
     if (value !== null && !(name === "rotate" && value === 0)) found[name] = value;
   }
+  if (layers.value) found.layers = layers.value;
   for (const name of CHOICES) if (field(name).value) found[name] = field(name).value;
   for (const name of SWITCHES) if (field(name).checked) found[name] = true;
   return found;
@@ -92,6 +97,13 @@ function sayPlace() {
   says.textContent = `${width} × ${height} mm, ${(100 * found.factor).toFixed(1)} % of its size.${over}`;
 }
 
+function sayMap() {
+  const { range, arm } = sheet;
+  $("map-of").textContent = arm?.map?.is_expected ? "the error that is expected over the paper" : "how far the pen strays for each degree that a joint is off";
+  $("map-legend").hidden = !sheet.showsMap || !range;
+  if (range) [$("map-least").textContent, $("map-most").textContent] = range.map((mm) => `${mm.toFixed(2)} mm`);
+}
+
 // -- drawings -------------------------------------------------------------------------------------------------------
 
 async function choose(id) {
@@ -112,6 +124,8 @@ async function choose(id) {
 }
 
 async function showNothing() {
+  linesOf = null;
+  layers.show(null, "");
   sheet.show({ lines: null, options: placement() });
   forgetFilm();
   for (const id of ["command-box", "run-box", "progress", "cancel"]) $(id).hidden = true;
@@ -122,12 +136,12 @@ async function showNothing() {
 async function showLines(job) {
   if (!lines.has(job.id) && job.state !== "reading" && !(job.state === "failed" && !job.command)) {
     const found = await get(`/api/jobs/${job.id}/lines`).catch(() => null);
-    if (found) {
-      found.hull = found.lines.flatMap((line) => line.points);
-      lines.set(job.id, found);
-    }
+    if (found) lines.set(job.id, found);
   }
-  if (job.id === current) sheet.show({ lines: lines.get(job.id) ?? null });
+  if (job.id !== current || linesOf === lines.get(job.id)) return;
+  linesOf = lines.get(job.id);
+  layers.show(linesOf, job.options.layers ?? "");
+  sheet.show({ lines: layers.of(linesOf) });
 }
 
 async function showArm() {
@@ -141,6 +155,7 @@ async function showArm() {
   if (name === $("arm").value && sheet.arm !== arm) {
     sheet.show({ arm });
     sayPlace();
+    sayMap();
   }
   return arm;
 }
@@ -149,6 +164,7 @@ function forgetFilm() {
   film = filmOf = null;
   plays = false;
   sheet.show({ film: null });
+  showPens($("pens"), []);
   armView.show(null);
   jointsView.show(null);
   $("film").hidden = true;
@@ -162,6 +178,7 @@ async function showFilm(job) {
   film = unpacked(found);
   filmOf = job.id;
   sheet.show({ film });
+  showPens($("pens"), film.pens);
   armView.show(film, arm);
   jointsView.show(film);
   $("film").hidden = false;
@@ -184,6 +201,7 @@ function showJob(job) {
     : job.state === "planned" ? job.summary[0] ?? "planned" : "";
   $("plan-notes").replaceChildren(...[...(job.state === "planned" ? job.summary.slice(1) : []), ...job.notes].map(item));
   const isPlanned = job.state === "planned";
+  $("picture-box").hidden = job.name.endsWith(".svg") || job.name.endsWith(".svgz");
   $("command-box").hidden = !job.command;
   $("command").textContent = job.command;
   $("download").hidden = !isPlanned;
@@ -420,6 +438,7 @@ $("cancel").addEventListener("click", () => tried($("plan-says"), () => post(`/a
 $("copy").addEventListener("click", () => navigator.clipboard?.writeText($("command").textContent));
 $("show-map").addEventListener("change", (event) => {
   sheet.showsMap = event.target.checked;
+  sayMap();
   sheet.draw();
 });
 $("play").addEventListener("click", () => play(!plays));

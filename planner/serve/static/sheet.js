@@ -25,7 +25,10 @@ export class Sheet {
 
   /** lines: null for no drawing. film: of the plan, drawn in the place of the lines, or null. */
   show({ arm, lines, options, film }) {
-    if (arm !== undefined) this.arm = arm;
+    if (arm !== undefined) {
+      this.arm = arm;
+      this.range = arm?.map ? rangeOf(arm.map) : null;
+    }
     if (lines !== undefined && lines !== this.lines) {
       this.lines = lines;
       this.paths = lines && pathsOf(lines);
@@ -66,7 +69,7 @@ export class Sheet {
     context.fillStyle = colour("--paper");
     if (sheet) context.fillRect(sheet.left, sheet.top, sheet.width, sheet.height);
     else context.fillRect(0, 0, mm.width, mm.height);
-    if (this.showsMap) drawMap(context, this.arm, mm);
+    if (this.showsMap && this.range) drawMap(context, this.arm, this.range, mm);
     context.setLineDash([6 * px, 4 * px]);
     context.strokeStyle = "#8a8f94";
     context.lineWidth = 1.5 * px;
@@ -280,16 +283,20 @@ function drawBase(context, mm, colour, px) {
   context.fill();
 }
 
-/** Cells coloured by how far the tip strays where a joint is a degree off. */
-function drawMap(context, arm, mm) {
-  const { x_mm: x, y_mm: y, strays_mm: strays } = arm.map;
-  const known = strays.flat().filter((value) => value !== null).sort((a, b) => a - b);
-  const [least, most] = [known[0], known[Math.floor(0.95 * (known.length - 1))]];
+/** From the least error of a map to what all but the worst twentieth keep, mm. */
+function rangeOf({ error_mm: error }) {
+  const known = error.flat().filter((value) => value !== null).sort((a, b) => a - b);
+  return known.length ? [known[0], known[Math.floor(0.95 * (known.length - 1))]] : null;
+}
+
+/** Cells coloured by the error there, as the ramp of the legend is. */
+function drawMap(context, arm, [least, most], mm) {
+  const { x_mm: x, y_mm: y, error_mm: error } = arm.map;
   context.globalAlpha = 0.55;
   for (let i = 0; i + 1 < x.length; i++) {
     for (let j = 0; j + 1 < x[i].length; j++) {
-      if (strays[i][j] === null) continue;
-      const share = Math.min(Math.max((strays[i][j] - least) / (most - least || 1), 0), 1);
+      if (error[i][j] === null) continue;
+      const share = Math.min(Math.max((error[i][j] - least) / (most - least || 1), 0), 1);
       context.fillStyle = `hsl(${210 - 190 * share} 75% ${62 - 12 * share}%)`;
       context.beginPath();
       for (const [k, l] of [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]]) context.lineTo(mm.left - y[k][l], mm.far - x[k][l]);
