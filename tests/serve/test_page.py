@@ -231,7 +231,8 @@ def test_a_picture_is_dropped_and_drawn(page: Page, server: Server) -> None:
     give(page, picture.getvalue(), "shades.png")
     expect(page.locator("#picture-box")).to_be_visible()
     page.select_option("[name=image]", "stipple")
-    page.fill("[name=image-line]", "1")
+    page.fill("[name=image-line]", "2")
+    page.fill("[name=scale]", "200")
     plan(page)
     assert server.get("/api/state")["jobs"][-1]["options"]["image"] == "stipple"
 

@@ -237,6 +237,7 @@ function drawJobs() {
 }
 
 async function add(files) {
+  await started;
   for (const file of files) {
     await tried($("plan-says"), async () => {
       const job = await upload(file);
@@ -346,6 +347,7 @@ const wish = (name) => tried($("run-says"), async () => runChanged(await post(`/
 // -- everything together --------------------------------------------------------------------------------------------
 
 let [drivers, simulators] = [[], []];
+let started = null; // what the server knows is here
 
 /** One may have been saved anew under its name. */
 function armsChanged(names) {
@@ -379,8 +381,9 @@ async function start() {
   jobs.clear();
   for (const job of state.jobs) jobs.set(job.id, job);
   run = state.run;
-  await choose(jobs.has(current) ? current : jobs.has(run.job) ? run.job : [...jobs.keys()].at(-1) ?? null);
   jogChanged(state.jog);
+  await choose(jobs.has(current) ? current : jobs.has(run.job) ? run.job : [...jobs.keys()].at(-1) ?? null);
+  runChanged(run); // by now the film is there
 }
 
 function tab(name) {
@@ -473,7 +476,7 @@ const parts = {
 watch(parts, {
   onConnected: () => {
     $("lost").hidden = true;
-    start().catch((error) => ($("plan-says").textContent = error.message));
+    started = start().catch((error) => say($("plan-says"), error.message, "bad"));
   },
   onLost: () => ($("lost").hidden = false),
 });
