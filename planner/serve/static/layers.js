@@ -1,6 +1,7 @@
 // Which layers of a drawing are drawn, and the pens that draw them.
 
 import { element } from "./dom.js";
+import { hullOf } from "./placement.js";
 
 const UNNAMED = "(no layer)";
 
@@ -53,7 +54,7 @@ export class Layers {
     if (!lines) return null;
     const chosen = this.#chosen();
     const left = lines.lines.filter(({ layer }) => chosen.has(layer));
-    return { ...lines, lines: left, hull: left.flatMap((line) => line.points) };
+    return { ...lines, lines: left, hull: hullOf(left.flatMap((line) => line.points)) };
   }
 
   #isUsual(name) {

@@ -30,6 +30,21 @@ export function extentOf(points) {
   return box;
 }
 
+/** Corners of the convex hull of points: whatever is turned, its extent is theirs. */
+export function hullOf(points) {
+  const sorted = [...points].sort((p, q) => p[0] - q[0] || p[1] - q[1]);
+  const isLeft = (p, q, r) => (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]) > 0;
+  const half = (list) => {
+    const chain = [];
+    for (const point of list) {
+      while (chain.length > 1 && !isLeft(chain.at(-2), chain.at(-1), point)) chain.pop();
+      chain.push(point);
+    }
+    return chain;
+  };
+  return [...half(sorted), ...half(sorted.reverse())];
+}
+
 /** The rectangle of the paper on the sheet, and what of it the canvas has. */
 export function paperOf(canvas, name, isWide) {
   const whole = { left: 0, top: 0, width: canvas.width, height: canvas.height };

@@ -1,5 +1,6 @@
 // The sheet: paper, what the arm reaches, and the drawing, which people move, size and turn by hand.
 
+import { Ink, Reel } from "./ink.js";
 import { canvasOf, placed } from "./placement.js";
 
 const HANDLE = 9;
@@ -31,10 +32,13 @@ export class Sheet {
     }
     if (lines !== undefined && lines !== this.lines) {
       this.lines = lines;
-      this.paths = lines && pathsOf(lines);
+      this.ink = lines && new Ink(lines);
     }
     if (options !== undefined) this.options = options;
-    if (film !== undefined) this.film = film;
+    if (film !== undefined && film !== this.film) {
+      this.film = film;
+      this.reel = film && new Reel(film);
+    }
     this.draw();
   }
 
@@ -78,26 +82,16 @@ export class Sheet {
     if (sheet) context.strokeRect(sheet.left, sheet.top, sheet.width, sheet.height);
     drawBase(context, mm, colour, px);
     if (this.film) this.#drawFilm(context, mm, px);
-    else if (placement) this.#drawLines(context, placement, px, colour);
+    else if (placement) this.#drawLines(context, placement, colour);
     if (placement && !this.film) this.#drawHandles(context, placement, px, colour);
     drawRuler(context, this.view, width, height, ratio, colour);
   }
 
-  #drawLines(context, placement, px, colour) {
+  #drawLines(context, placement, colour) {
     const { room } = placement.paper;
-    const { turn: [a, b, c, d], box, factor, corner } = placement;
-    const ink = (style) => {
-      context.save();
-      context.translate(corner[0] - factor * box.left, corner[1] - factor * box.top);
-      context.transform(factor * a, factor * b, factor * c, factor * d, 0, 0);
-      context.lineWidth = Math.max(px, 0.3) / factor;
-      context.lineCap = context.lineJoin = "round";
-      for (const { path, colour: own } of this.paths) {
-        context.strokeStyle = style ?? own;
-        context.stroke(path);
-      }
-      context.restore();
-    };
+    const { scale, x, y } = this.view;
+    const isMoving = this.drag !== null && this.drag.kind !== "move";
+    const ink = (style) => this.ink.draw(context, new DOMMatrix([scale, 0, 0, scale, x, y]), placement, isMoving, style);
     if (placement.over > 0.01) {
       ink(colour("--bad"));
       context.save();
@@ -106,24 +100,16 @@ export class Sheet {
       context.clip();
       context.fillStyle = colour("--paper");
       context.fillRect(room.left, room.top, room.width, room.height);
-      ink(null);
+      ink();
       context.restore();
-    } else ink(null);
+    } else ink();
   }
 
   #drawFilm(context, mm, px) {
-    const film = this.film;
-    context.save();
+    const { scale, x, y } = this.view;
     // arm (x, y) to the sheet: X = left - y, Y = far - x
-    context.transform(0, -1, -1, 0, mm.left, mm.far);
-    context.lineCap = context.lineJoin = "round";
-    for (const { path, from, colour, width } of film.strokes) {
-      if (from > this.until) break;
-      context.lineWidth = Math.max(width || 0.3, px);
-      context.strokeStyle = colour;
-      context.stroke(path);
-    }
-    context.restore();
+    const toPixels = new DOMMatrix([scale, 0, 0, scale, x, y]).multiply(new DOMMatrix([0, -1, -1, 0, mm.left, mm.far]));
+    this.reel.draw(context, toPixels, px, this.until);
   }
 
   #drawHandles(context, placement, px, colour) {
@@ -208,6 +194,7 @@ export class Sheet {
 
   #letGo() {
     this.drag = null;
+    this.draw();
   }
 
   #key(event) {
@@ -226,19 +213,6 @@ export class Sheet {
     else return;
     event.preventDefault();
   }
-}
-
-/** One path for each colour in turn, so that thousands of lines are a few strokes of the brush. */
-function pathsOf(lines) {
-  const paths = [];
-  for (const { points, colour } of lines.lines) {
-    let last = paths.at(-1);
-    if (!last || last.colour !== colour) paths.push((last = { colour, path: new Path2D() }));
-    last.path.moveTo(...points[0]);
-    for (const point of points.slice(1)) last.path.lineTo(...point);
-    if (points.length === 1) last.path.lineTo(points[0][0] + 1e-3, points[0][1]);
-  }
-  return paths;
 }
 
 function cornersOf({ corner: [x, y], size, factor }) {
