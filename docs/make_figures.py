@@ -48,7 +48,7 @@ FIRST_HOUR = {
 }
 """What each is made of, of what the first hour leaves."""
 SYMPTOMS = "symptoms.png"
-PAGE = ("page-sheet.png", "page-arm.png", "page-joints.png", "page-phone.png")
+PAGE = tuple(f"page-{view}.png" for view in ("sheet", "map", "arm", "joints", "phone", "jog", "calibrate"))
 LANTERN = ROOT / "examples" / "lantern.svg"
 FILLS = {
     "fills.png": [

@@ -5,48 +5,94 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from playwright.sync_api import Page, expect, sync_playwright
+from first_hour import ARM, photographed
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from benchmarks.browser.chromium import executable
 from tests.serve.served import Server
 
 _FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 _DESK, _PHONE = {"width": 1280, "height": 820}, {"width": 360, "height": 780}
-_PATIENCE_MS = 60_000
+_PATIENCE_MS = 120_000
 
 
 def page_pictures(folder: Path, drawing: Path) -> None:
-    """page-sheet.png, page-arm.png, page-joints.png, page-phone.png."""
+    """page-sheet.png, page-map.png, page-arm.png, page-joints.png, page-phone.png, page-jog.png, page-calibrate.png."""
     with Server(folder / "house", "--demo") as server, sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=executable(), args=_FLAGS)
-        page = browser.new_page(viewport=_DESK)
-        page.goto(server.address)
-        page.set_input_files("#file", drawing)
-        expect(page.locator("#jobs .job").first).to_contain_text("not planned yet", timeout=_PATIENCE_MS)
-        page.select_option("#arm", "so101")
-        page.select_option("[name=paper]", "a5")
-        expect(page.locator("#sheet-says")).to_contain_text("% of its size", timeout=_PATIENCE_MS)
-        page.wait_for_timeout(500)
-        page.screenshot(path=folder / "page-sheet.png")
-        page.click("#plan")
-        expect(page.locator("#film")).to_be_visible(timeout=_PATIENCE_MS)
-        _view(page, "arm", folder)
-        _view(page, "joints", folder)
-        phone = browser.new_page(viewport=_PHONE, color_scheme="dark")
-        phone.goto(server.address)
-        page.click("#run")
-        expect(phone.locator("#standing")).to_contain_text("drawing", timeout=_PATIENCE_MS)
-        phone.wait_for_timeout(6000)
-        phone.locator("#tab-sheet").scroll_into_view_if_needed()
-        phone.screenshot(path=folder / "page-phone.png")
-        page.click("#stop")
-        expect(page.locator("#standing")).to_contain_text("stopped", timeout=_PATIENCE_MS)
+        _draw(browser, server, folder, drawing)
+        _jog(browser, server, folder)
+        _calibrate(browser, server, folder)
         browser.close()
 
 
-def _view(page: Page, name: str, folder: Path) -> None:
-    page.click(f"#tab-{name}")
-    page.locator("#time").fill("24")
+def _draw(browser: Browser, server: Server, folder: Path, drawing: Path) -> None:
+    page = _opened(browser, server)
+    page.set_input_files("#file", drawing)
+    expect(page.locator("#jobs .job").first).to_contain_text("not planned yet", timeout=_PATIENCE_MS)
+    page.select_option("#arm", "so101")
+    page.select_option("[name=paper]", "a5")
+    expect(page.locator("#sheet-says")).to_contain_text("% of its size", timeout=_PATIENCE_MS)
+    _taken(page, folder, "sheet")
+    page.check("#show-map")
+    expect(page.locator("#map-legend")).to_be_visible(timeout=_PATIENCE_MS)
+    _taken(page, folder, "map")
+    page.uncheck("#show-map")
+    page.click("#plan")
+    expect(page.locator("#film")).to_be_visible(timeout=_PATIENCE_MS)
+    for name in ("arm", "joints"):
+        page.click(f"#tab-{name}")
+        page.locator("#time").fill("24")
+        _taken(page, folder, name)
+    phone = _opened(browser, server, phone=True)
+    page.click("#run")
+    expect(phone.locator("#standing")).to_contain_text("drawing", timeout=_PATIENCE_MS)
+    phone.wait_for_timeout(6000)
+    phone.locator("#tab-sheet").scroll_into_view_if_needed()
+    _taken(phone, folder, "phone")
+    page.click("#stop")
+    expect(page.locator("#standing")).to_contain_text("stopped", timeout=_PATIENCE_MS)
+
+
+def _jog(browser: Browser, server: Server, folder: Path) -> None:
+    page = _opened(browser, server, "#jog")
+    page.select_option("#jog-arm", ARM)
+    page.click("#jog-start")
+    joint = page.locator("#jog-joints li").first
+    joint.get_by_role("button", name="more").click(timeout=_PATIENCE_MS)
+    joint.get_by_role("button", name="upper limit").click()
+    expect(page.locator("#jog-says")).to_contain_text("not saved", timeout=_PATIENCE_MS)
+    _taken(page, folder, "jog")
+    page.click("#hold")
+    expect(page.locator("#jog-says")).to_contain_text("holds", timeout=_PATIENCE_MS)
+
+
+def _calibrate(browser: Browser, server: Server, folder: Path) -> None:
+    page = _opened(browser, server, "#calibrate")
+    page.select_option("#walk-arm", ARM)
+    page.click("#walk-begin button")
+    expect(page.locator("#walk-sheet")).to_be_visible(timeout=_PATIENCE_MS)
+    page.click("#walk-draw")
+    expect(page.locator("#walk-drawn")).to_contain_text("played", timeout=_PATIENCE_MS)
+    photographed(folder / "house" / "calibration")
+    page.set_input_files("#walk-photo", folder / "house" / "calibration" / "photo.jpg")
+    expect(page.locator("#walk-reading")).to_be_visible(timeout=_PATIENCE_MS)
+    page.click("#walk-calibrate button")
+    expect(page.locator("#walk-found")).to_contain_text("is an arm now", timeout=_PATIENCE_MS)
+    page.locator("#step-measure").scroll_into_view_if_needed()
+    page.set_viewport_size(_DESK | {"height": 1500})
+    _taken(page, folder, "calibrate")
+
+
+def _opened(browser: Browser, server: Server, where: str = "", *, phone: bool = False) -> Page:
+    look = {"viewport": _PHONE, "color_scheme": "dark"} if phone else {"viewport": _DESK}
+    page = browser.new_page(**look)  # type: ignore[arg-type]
+    page.goto(server.address + where)
+    page.wait_for_timeout(1000)
+    return page
+
+
+def _taken(page: Page, folder: Path, name: str) -> None:
     page.wait_for_timeout(1500)
     page.screenshot(path=folder / f"page-{name}.png")
 

@@ -12,6 +12,7 @@ async function answer(path, options = {}) {
 
 export const get = (path) => answer(path);
 
+/** What comes of it is told by `watch`: the answer may be overtaken by that. */
 export const post = (path, asked = {}) =>
   answer(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(asked) });
 

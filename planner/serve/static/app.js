@@ -338,11 +338,11 @@ function begin(more) {
     const driver = $("driver").value;
     const options = { driver, "speed-factor": Number($("speed-factor").value), ...more };
     if ($("port").value && !simulators.includes(driver)) options.port = $("port").value;
-    runChanged(await post(`/api/jobs/${current}/run`, options));
+    await post(`/api/jobs/${current}/run`, options);
   });
 }
 
-const wish = (name) => tried($("run-says"), async () => runChanged(await post(`/api/run/${name}`)));
+const wish = (name) => tried($("run-says"), () => post(`/api/run/${name}`));
 
 // -- everything together --------------------------------------------------------------------------------------------
 
@@ -431,7 +431,7 @@ form.addEventListener("input", (event) => {
 form.addEventListener("submit", (event) => {
   event.preventDefault();
   if (!current) return void ($("plan-says").textContent = "Drop a drawing first.");
-  tried($("plan-says"), async () => jobChanged(await post(`/api/jobs/${current}/plan`, asked())));
+  tried($("plan-says"), () => post(`/api/jobs/${current}/plan`, asked()));
 });
 $("fit").addEventListener("click", () => {
   for (const name of ["at-x", "at-y", "scale"]) field(name).value = "";

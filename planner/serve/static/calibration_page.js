@@ -22,7 +22,7 @@ export class CalibrationPage {
         const [file] = event.target.files;
         event.target.value = "";
         const bar = $("walk-bar").value.trim();
-        if (file) tried($("walk-says"), async () => this.show(await upload(file, "/api/calibration/photo", { bar })));
+        if (file) tried($("walk-says"), () => upload(file, "/api/calibration/photo", { bar }));
       });
     }
     $("walk-calibrate").addEventListener("submit", (event) => {
@@ -88,6 +88,6 @@ export class CalibrationPage {
   }
 
   #ask(path, asked) {
-    return tried($("walk-says"), async () => this.show(await post(path, asked)));
+    return tried($("walk-says"), () => post(path, asked));
   }
 }

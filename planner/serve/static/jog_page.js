@@ -15,11 +15,11 @@ export class JogPage {
     this.jog = null;
     $("jog-begin").addEventListener("submit", (event) => {
       event.preventDefault();
-      this.#tried(async () => this.show(await post("/api/jog", {
+      this.#tried(() => post("/api/jog", {
         arm: $("jog-arm").value, target: $("jog-target").value, driver: $("jog-driver").value,
         port: this.simulators.includes($("jog-driver").value) ? "" : $("jog-port").value,
         "from-middle": $("jog-from-middle").checked,
-      })));
+      }));
     });
     $("jog-arm").addEventListener("change", () => this.#name());
     for (const button of document.querySelectorAll("[data-jog]")) {
@@ -90,7 +90,7 @@ export class JogPage {
   }
 
   #do(command, more) {
-    return this.#tried(async () => this.show(await post("/api/jog/do", { command, ...more })));
+    return this.#tried(() => post("/api/jog/do", { command, ...more }));
   }
 
   #tried(work) {

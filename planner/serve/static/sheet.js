@@ -29,6 +29,7 @@ export class Sheet {
     if (arm !== undefined) {
       this.arm = arm;
       this.range = arm?.map ? rangeOf(arm.map) : null;
+      this.zone = arm?.canvas_mm ? zoneOf(arm, canvasOf(arm)) : null;
     }
     if (lines !== undefined && lines !== this.lines) {
       this.lines = lines;
@@ -68,7 +69,8 @@ export class Sheet {
     const { scale, x, y } = this.view;
     const px = 1 / scale;
     context.setTransform(scale, 0, 0, scale, x, y);
-    drawReach(context, this.arm, mm, colour);
+    context.fillStyle = colour("--zone");
+    context.fill(this.zone);
     const sheet = placement?.paper.sheet;
     context.fillStyle = colour("--paper");
     if (sheet) context.fillRect(sheet.left, sheet.top, sheet.width, sheet.height);
@@ -80,7 +82,7 @@ export class Sheet {
     context.strokeRect(0, 0, mm.width, mm.height);
     context.setLineDash([]);
     if (sheet) context.strokeRect(sheet.left, sheet.top, sheet.width, sheet.height);
-    drawBase(context, mm, colour, px);
+    drawBase(context, baseOf(this.arm, mm), colour, px);
     if (this.film) this.#drawFilm(context, mm, px);
     else if (placement) this.#drawLines(context, placement, colour);
     if (placement && !this.film) this.#drawHandles(context, placement, px, colour);
@@ -225,7 +227,9 @@ const turnHandle = ({ corner: [x, y], size, factor }, px) => [x + (size[0] * fac
 /** Everything that there is to see, with room about it. */
 function viewOf(arm, mm, placement, width, height) {
   const sheet = placement?.paper.sheet;
-  const [low, high] = [[0, 0], [mm.width, mm.far]]; // down to the axis of the base
+  const base = baseOf(arm, mm);
+  const low = base.map((edge) => Math.min(edge, 0));
+  const high = [Math.max(mm.width, base[0]), Math.max(mm.height, base[1])];
   if (sheet) {
     low[0] = Math.min(low[0], sheet.left);
     low[1] = Math.min(low[1], sheet.top);
@@ -241,19 +245,38 @@ function viewOf(arm, mm, placement, width, height) {
   };
 }
 
-function drawReach(context, arm, mm, colour) {
-  const [inner, outer] = arm.reach_mm;
-  context.fillStyle = colour("--zone");
-  context.beginPath();
-  context.arc(mm.left, mm.far, outer, Math.PI, 2 * Math.PI);
-  context.arc(mm.left, mm.far, inner, 2 * Math.PI, Math.PI, true);
-  context.fill();
+/** Where the base stands on the sheet. */
+const baseOf = ({ base_mm: [x, y] }, mm) => [mm.left - y, mm.far - x];
+
+/** What the pen reaches: a half ring, or row by row what the map has of it. */
+function zoneOf(arm, mm) {
+  const zone = new Path2D();
+  const [x, y] = baseOf(arm, mm);
+  if (arm.is_ring) {
+    const [inner, outer] = arm.reach_mm;
+    zone.arc(x, y, outer, Math.PI, 2 * Math.PI);
+    zone.arc(x, y, inner, 2 * Math.PI, Math.PI, true);
+    return zone;
+  }
+  const { x_mm: xs, y_mm: ys, error_mm: error } = arm.map;
+  const at = (i, j) => [mm.left - ys[i][j], mm.far - xs[i][j]];
+  for (let i = 0; i + 1 < xs.length; i++) {
+    for (let j = 0; j + 1 < xs[i].length; j++) {
+      const begin = j;
+      while (j + 1 < xs[i].length && error[i][j] !== null) j++;
+      if (j === begin) continue;
+      zone.moveTo(...at(i, begin));
+      for (let k = begin + 1; k <= j; k++) zone.lineTo(...at(i, k));
+      for (let k = j; k >= begin; k--) zone.lineTo(...at(i + 1, k));
+    }
+  }
+  return zone;
 }
 
-function drawBase(context, mm, colour, px) {
+function drawBase(context, [x, y], colour, px) {
   context.fillStyle = colour("--link");
   context.beginPath();
-  context.arc(mm.left, mm.far, 5 * px + 3, 0, 2 * Math.PI);
+  context.arc(x, y, 5 * px + 3, 0, 2 * Math.PI);
   context.fill();
 }
 
