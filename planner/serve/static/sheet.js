@@ -5,6 +5,7 @@ import { canvasOf, placed } from "./placement.js";
 
 const HANDLE = 9;
 const SMALLEST = 0.01;
+const [LEAST, MOST] = [[207, 227, 241], [213, 94, 0]]; // of the map, as in its legend
 const rounded = (value, digits = 2) => Number(value.toFixed(digits));
 
 export class Sheet {
@@ -289,12 +290,12 @@ function rangeOf({ error_mm: error }) {
 /** Cells coloured by the error there, as the ramp of the legend is. */
 function drawMap(context, arm, [least, most], mm) {
   const { x_mm: x, y_mm: y, error_mm: error } = arm.map;
-  context.globalAlpha = 0.55;
+  context.globalAlpha = 0.7;
   for (let i = 0; i + 1 < x.length; i++) {
     for (let j = 0; j + 1 < x[i].length; j++) {
       if (error[i][j] === null) continue;
       const share = Math.min(Math.max((error[i][j] - least) / (most - least || 1), 0), 1);
-      context.fillStyle = `hsl(${210 - 190 * share} 75% ${62 - 12 * share}%)`;
+      context.fillStyle = `rgb(${LEAST.map((channel, k) => Math.round(channel + share * (MOST[k] - channel))).join(" ")})`;
       context.beginPath();
       for (const [k, l] of [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]]) context.lineTo(mm.left - y[k][l], mm.far - x[k][l]);
       context.fill();
