@@ -98,7 +98,8 @@ function sayPlace() {
 }
 
 function sayMap() {
-  const { range, arm } = sheet;
+  const { map, arm } = sheet;
+  const range = map?.range;
   $("map-of").textContent = arm?.map?.is_expected ? "the error that is expected over the paper" : "how far the pen strays for each degree that a joint is off";
   $("map-legend").hidden = !sheet.showsMap || !range;
   if (range) [$("map-least").textContent, $("map-most").textContent] = range.map((mm) => `${mm.toFixed(2)} mm`);

@@ -29,3 +29,6 @@ export function offer(select, names) {
   select.replaceChildren(...names.map((name) => element("option", name)));
   if (names.includes(chosen)) select.value = chosen;
 }
+
+/** To paint on a canvas that bitmaps are put on, or that is one: all in memory, with no way to a graphics card between. */
+export const brushOf = (canvas) => canvas.getContext("2d", { willReadFrequently: true });

@@ -1,6 +1,6 @@
 // Lines as bitmaps: what is dragged about is painted once, and then only put elsewhere; what a film has drawn stays.
 
-import { element } from "./dom.js";
+import { brushOf, element } from "./dom.js";
 
 const PAD = 4;
 const LARGEST = 3000;
@@ -45,7 +45,7 @@ export class Ink {
     const scale = Math.min(sheet.a, LARGEST / Math.max(width, height, 1e-9));
     const bitmap = element("canvas", "", { width: scale * width + 2 * PAD, height: scale * height + 2 * PAD });
     const fromPage = new DOMMatrix().translate(PAD, PAD).scale(scale).translate(-inked.left, -inked.top).multiply(toSheet);
-    const context = bitmap.getContext("2d");
+    const context = brushOf(bitmap);
     context.setTransform(fromPage);
     context.lineWidth = Math.max(1 / scale, 0.3) / factor;
     context.lineCap = context.lineJoin = "round";
@@ -60,7 +60,7 @@ export class Ink {
     const { bitmap, tints } = this.painted;
     if (!tints.has(colour)) {
       const tinted = element("canvas", "", { width: bitmap.width, height: bitmap.height });
-      const context = tinted.getContext("2d");
+      const context = brushOf(tinted);
       context.drawImage(bitmap, 0, 0);
       context.globalCompositeOperation = "source-in";
       context.fillStyle = colour;
@@ -88,7 +88,7 @@ export class Reel {
       this.canvas = element("canvas", "", { width, height });
       [this.key, this.count] = [key, 0];
     }
-    const reel = this.canvas.getContext("2d");
+    const reel = brushOf(this.canvas);
     reel.setTransform(toPixels);
     reel.lineCap = reel.lineJoin = "round";
     for (const { path, colour, width: of } of strokes.slice(this.count, count)) {

@@ -1,11 +1,12 @@
 // The sheet: paper, what the arm reaches, and the drawing, which people move, size and turn by hand.
 
+import { brushOf } from "./dom.js";
+import { ErrorMap } from "./error_map.js";
 import { Ink, Reel } from "./ink.js";
 import { canvasOf, placed } from "./placement.js";
 
 const HANDLE = 9;
 const SMALLEST = 0.01;
-const [LEAST, MOST] = [[207, 227, 241], [213, 94, 0]]; // of the map, as in its legend
 const rounded = (value, digits = 2) => Number(value.toFixed(digits));
 
 export class Sheet {
@@ -29,7 +30,7 @@ export class Sheet {
   show({ arm, lines, options, film }) {
     if (arm !== undefined) {
       this.arm = arm;
-      this.range = arm?.map ? rangeOf(arm.map) : null;
+      this.map = arm?.map ? new ErrorMap(arm.map) : null;
       this.zone = arm?.canvas_mm ? zoneOf(arm, canvasOf(arm)) : null;
     }
     if (lines !== undefined && lines !== this.lines) {
@@ -59,7 +60,7 @@ export class Sheet {
     const ratio = devicePixelRatio || 1;
     const [width, height] = [Math.round(canvas.clientWidth * ratio), Math.round(canvas.clientHeight * ratio)];
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
-    const context = canvas.getContext("2d");
+    const context = brushOf(canvas);
     const colour = (name) => getComputedStyle(canvas).getPropertyValue(name).trim();
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, width, height);
@@ -76,7 +77,7 @@ export class Sheet {
     context.fillStyle = colour("--paper");
     if (sheet) context.fillRect(sheet.left, sheet.top, sheet.width, sheet.height);
     else context.fillRect(0, 0, mm.width, mm.height);
-    if (this.showsMap && this.range) drawMap(context, this.arm, this.range, mm);
+    if (this.showsMap) this.map?.draw(context, mm);
     context.setLineDash([6 * px, 4 * px]);
     context.strokeStyle = "#8a8f94";
     context.lineWidth = 1.5 * px;
@@ -279,29 +280,6 @@ function drawBase(context, [x, y], colour, px) {
   context.beginPath();
   context.arc(x, y, 5 * px + 3, 0, 2 * Math.PI);
   context.fill();
-}
-
-/** From the least error of a map to what all but the worst twentieth keep, mm. */
-function rangeOf({ error_mm: error }) {
-  const known = error.flat().filter((value) => value !== null).sort((a, b) => a - b);
-  return known.length ? [known[0], known[Math.floor(0.95 * (known.length - 1))]] : null;
-}
-
-/** Cells coloured by the error there, as the ramp of the legend is. */
-function drawMap(context, arm, [least, most], mm) {
-  const { x_mm: x, y_mm: y, error_mm: error } = arm.map;
-  context.globalAlpha = 0.7;
-  for (let i = 0; i + 1 < x.length; i++) {
-    for (let j = 0; j + 1 < x[i].length; j++) {
-      if (error[i][j] === null) continue;
-      const share = Math.min(Math.max((error[i][j] - least) / (most - least || 1), 0), 1);
-      context.fillStyle = `rgb(${LEAST.map((channel, k) => Math.round(channel + share * (MOST[k] - channel))).join(" ")})`;
-      context.beginPath();
-      for (const [k, l] of [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]]) context.lineTo(mm.left - y[k][l], mm.far - x[k][l]);
-      context.fill();
-    }
-  }
-  context.globalAlpha = 1;
 }
 
 function drawRuler(context, { scale }, width, height, ratio, colour) {
