@@ -137,12 +137,12 @@ class Jogging:
 
     def lines(self) -> list[str]:
         """Where every joint stands, the chosen one marked, and the pen."""
-        values, positions = self.values, self.positions
+        unit, values, positions = self.unit, self.values, self.positions
         rows = []
         for k, joint in enumerate(self.arm.joints):
             low, at, high = np.array([joint.minimum, positions[k], joint.maximum]) / joint.per_file_unit
             rows.append(
-                f"{'>' if k == self.joint else ' '} {joint.name}: {values[k]:.1f} {self.unit}, {at:.2f} {joint.file_unit} "
+                f"{'>' if k == self.joint else ' '} {joint.name}: {values[k]:.1f} {unit}, {at:.2f} {joint.file_unit} "
                 f"({low:.1f} to {high:.1f})"
             )
         x, y, height = self.tip_mm
