@@ -252,7 +252,7 @@ def _summary(trajectory: Trajectory, model: ArmModel, drawings: Sequence[PenDraw
         size_mm=place.size_mm,
         scale=place.scale,
         warnings=told_of(place.drawing, drawings),
-        where=place.board.where(),
+        where=place.board.where(arm.paper),
         won=place.won,
         hints=place.notes,
         pens=tuple(pen.name for pen in trajectory.pens),

@@ -143,12 +143,16 @@ FREE = ConfigurationTest(
 )
 """What is not free is not quick either: this tells it apart where an arm is refused."""
 
+LINKS_ABOVE = ConfigurationTest(
+    _links_above_paper, "have a joint below the paper", "raise the base (d_mm of the first joint)"
+)
+
 TESTS = (
     ConfigurationTest(
         _keeps_limits, "have a joint beyond its limits or nearly so", "widen these limits, or change theta_deg"
     ),
-    ConfigurationTest(_links_above_paper, "have a joint below the paper", "raise the base (d_mm of the first joint)"),
-    ConfigurationTest(_pen_points_down, "have the pen pointing up", "turn pen.tool_axis around"),
+    LINKS_ABOVE,
+    ConfigurationTest(_pen_points_down, "have the pen pointing away from the paper", "turn pen.tool_axis around"),
     QUICK,
     ConfigurationTest(
         _links_apart, "bring links too close to each other or to the paper", "check thickness_mm of the links"
