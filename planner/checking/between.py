@@ -109,7 +109,9 @@ def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation, per_st
         part = slice(start, start + len(block))
         tip[part] = poses.tip_mm.T
         lowest[part] = np.minimum(poses.lowest_mm, capsules.lowest_mm(poses))
-        tilt[part] = np.arctan2(np.linalg.norm(np.cross(poses.tool, held, axis=0), axis=0), (poses.tool * held).sum(axis=0))
+        tilt[part] = np.arctan2(
+            np.linalg.norm(np.cross(poses.tool, held, axis=0), axis=0), (poses.tool * held).sum(axis=0)
+        )
         start += len(block)
     point = np.arange(n_points)
     sample, between = point // per_step, point % per_step > 0

@@ -12,7 +12,6 @@ from planner.errors import UsageError
 from planner.paper_size import Orientation, PaperSize
 from planner.workspace.canvas import Canvas
 
-
 _STRAIGHT_RAD = float(np.radians(5.0))
 """Up to so far turned, a paper lies level and straight before the base."""
 

@@ -30,12 +30,15 @@ def no_usable_configuration(kinematics: Kinematics) -> PlanError:
     found = on_paper(kinematics, starts)
     rest = f"arm {arm.name}: no configuration puts the pen on the paper: "
     if not len(starts):
-        return PlanError(rest + f"pen.tool_axis never points at it within the joint limits; {_behind(arm) or 'turn it around'}")
+        return PlanError(
+            rest + f"pen.tool_axis never points at it within the joint limits; {_behind(arm) or 'turn it around'}"
+        )
     if not len(found):
         held = " with the pen pointed straight at it" if arm.pen.hold is PenHold.TOOL_AXIS else ""
         return PlanError(
             rest
-            + f"of {len(starts)} tried none gets there{held}, joint limits aside; check d_mm and a_mm of the joints and [paper]"
+            + f"of {len(starts)} tried none gets there{held}, joint limits aside; check d_mm and a_mm of the joints,"
+            " and [paper]"
         )
     tests = (FREE, *TESTS, _clear_of_base(arm))
     passed = np.array([test.kept(kinematics, found) for test in tests])
@@ -50,7 +53,9 @@ def no_usable_configuration(kinematics: Kinematics) -> PlanError:
         if rejected[index]
     ]
     return PlanError(
-        rest + f"of {len(starts)} tried {len(found)} get there, and of these {', '.join(counts)}; {_remedy(arm, tests[worst])}"
+        rest
+        + f"of {len(starts)} tried {len(found)} get there, and of these {', '.join(counts)}; "
+        + _remedy(arm, tests[worst])
     )
 
 
