@@ -38,10 +38,10 @@ class Board:
         what = f"the {self.size} sheet" if self.size else "paper"
         corners_mm = np.column_stack((sheet.corners_arm_mm, np.zeros(4)))
         if np.trace(paper.T_base_paper[:3, :3]) < 1.0 + 2.0 * np.cos(_STRAIGHT_RAD):
-            corners = _in_words(paper.to_base(corners_mm))
+            put = "lay" if paper.normal[2] > np.cos(_STRAIGHT_RAD) else "put up"
             return (
-                f"{'lay' if paper.normal[2] > np.cos(_STRAIGHT_RAD) else 'put up'} {what} of {sheet.width_mm:.0f} x {sheet.height_mm:.0f} mm; corners at {corners} in the base"
-                " frame, first its top left and top right"
+                f"{put} {what} of {sheet.width_mm:.0f} x {sheet.height_mm:.0f} mm; corners at"
+                f" {_in_words(paper.to_base(corners_mm))} in the base frame, first its top left and top right"
             )
         x, y, _ = paper.T_paper_base[:3, 3].tolist()
         corners = _in_words(paper.to_base(corners_mm)[:, :2])
@@ -50,8 +50,8 @@ class Board:
             "in the middle" if abs(middle) < 0.5 else f"{abs(middle):.0f} mm to the {'left' if middle > 0 else 'right'}"
         )
         return (
-            f"lay {what} {sheet.near_mm - x:.0f} to {sheet.far_mm - x:.0f} mm before the base's axis, {sheet.width_mm:.0f} mm wide,"
-            f" {beside}; corners at {corners}"
+            f"lay {what} {sheet.near_mm - x:.0f} to {sheet.far_mm - x:.0f} mm before the base's axis,"
+            f" {sheet.width_mm:.0f} mm wide, {beside}; corners at {corners}"
         )
 
 
