@@ -14,7 +14,8 @@ from planner.arms.arm import Arm
 from planner.arms.paper_pose import PaperPose
 from planner.arms.rigid_transform import RigidTransform
 from planner.checking.check import check_trajectory
-from planner.errors import ArmFileError, PlanError
+from planner.errors import ArmFileError, PlanError, UsageError
+from planner.inverse_kinematics.closed_forms import closed_form_of
 from planner.pipeline import Plan, plan
 from planner.progress import unreported
 from planner.settings import PlanSettings
@@ -99,3 +100,13 @@ def test_links_keep_out_of_a_ceiling(planned: Callable[[Arm], Plan]) -> None:
     free = arm.independent_of(arm.from_file_units(planned(arm).trajectory.positions))
     in_base_mm = arm.paper.to_base(model_of(arm).kinematics.nodes_mm(free))
     assert in_base_mm[..., 2].max() < arm.paper.z_mm + 0.01
+
+
+def test_closed_forms_know_where_a_level_paper_lies_and_leave_boards_to_others() -> None:
+    six = load_once("six_joint")
+    moved = replace(six, paper=PaperPose(120.0, -30.0, 4.0, 0.5))
+    tips_mm = np.array([[20.0, 10.0, 0.0], [60.0, -40.0, 3.0]])
+    configurations = closed_form_of(moved)(tips_mm)
+    np.testing.assert_allclose(model_of(moved).kinematics.tip_mm(configurations), tips_mm, atol=1e-6)
+    with pytest.raises(UsageError, match="tilts it by 90 degrees"):
+        closed_form_of(replace(six, paper=BOARD))
