@@ -25,7 +25,7 @@ AtPose = Callable[[Arm, FloatArray], Branches]
 """Arm and poses (n, 4, 4), mm, to all configurations."""
 
 
-_LEVEL = 0.99
+_LEVEL = float(np.cos(np.radians(5.0)))
 """Cosine of the tilt up to which a paper counts as level."""
 
 
