@@ -53,7 +53,8 @@ def test_files_hold_any_tilt(tilt_deg: float, tmp_path: Path) -> None:
 
 def test_a_card_moves_a_board_along_its_normal() -> None:
     moved = paper_under(replace(load_arm("six_joint"), paper=BOARD), np.array([10.0, 20.0, -3.0]), 1.0)
-    assert moved.paper == replace(BOARD, x_mm=pytest.approx(194.0), y_mm=5.0, z_mm=pytest.approx(80.0))
+    np.testing.assert_allclose(moved.paper.T_base_paper[:3, 3], [194.0, 5.0, 80.0], atol=1e-9)
+    assert replace(moved.paper, x_mm=190.0, y_mm=5.0, z_mm=80.0) == BOARD
 
 
 def test_a_longer_pen_needs_the_board_nearer() -> None:
