@@ -130,7 +130,7 @@ class TargetBeyondReach(PlanError):
     def __init__(self, target_mm: Sequence[float], gap_mm: float, *, pointed: bool) -> None:
         self.target_mm, self.gap_mm = tuple(float(value) for value in target_mm), gap_mm
         place = ", ".join(f"{value:g}" for value in self.target_mm)
-        held = " with the pen pointed straight down" if pointed else ""
+        held = " with the pen pointed straight at the paper" if pointed else ""
         super().__init__(f"target ({place}) mm is out of reach{held}: the nearest tip found is {gap_mm:.1f} mm away")
 
 

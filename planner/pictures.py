@@ -106,7 +106,7 @@ def workspace_figure(arm: Arm, look: Look) -> Figure:
             canvases[kind] = canvas_of(model, kind, arm.pen.lift_mm).corners_arm_mm
         except PlanError:  # a narrow ring has no documented canvas
             continue
-    return plot_workspace(arm.name, paper_map(model), canvases, ring_mm, look)
+    return plot_workspace(arm.name, paper_map(model), canvases, ring_mm, arm.paper, look)
 
 
 def film_page(trajectory: Trajectory, arm: Arm) -> str:

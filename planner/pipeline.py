@@ -121,7 +121,7 @@ def taken(place: Placed, context: PlanContext, report: Report) -> tuple[Placed, 
         of_pen = settings.with_pen(group.pen, own_mm_s, group.speed_share) if group.is_named else settings
         height_mm = group.pen.height_mm
         if height_mm not in models:
-            models[height_mm] = ArmModel(model.arm.holding(height_mm))
+            models[height_mm] = ArmModel(model.arm.holding(height_mm, model.kinematics.held_along))
         is_usual = of_pen == settings and not height_mm
         one = PenDrawing(group, context if is_usual else PlanContext(models[height_mm], of_pen))
         one.take(place.svg_to_arm)
@@ -252,7 +252,7 @@ def _summary(trajectory: Trajectory, model: ArmModel, drawings: Sequence[PenDraw
         size_mm=place.size_mm,
         scale=place.scale,
         warnings=told_of(place.drawing, drawings),
-        where=place.board.where(),
+        where=place.board.where(arm.paper),
         won=place.won,
         hints=place.notes,
         pens=tuple(pen.name for pen in trajectory.pens),

@@ -119,7 +119,9 @@ def plan_tiles(
             except PlanError as error:
                 raise PlanError(f"sheet {tile}: {error}") from error
             sheets.append(Sheet(tile, plan))
-    return TiledPlan(tiling, tuple(sheets), whole, tuple(told_of(whole.drawing, pens)), board.where())
+    return TiledPlan(
+        tiling, tuple(sheets), whole, tuple(told_of(whole.drawing, pens)), board.where(context.model.arm.paper)
+    )
 
 
 def _by_sheet(tiling: Tiling, pens: Sequence[PenDrawing]) -> list[tuple[Tile, list[PenDrawing]]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +11,9 @@ import pypdfium2
 import pytest
 
 from hardware.motion.tip import link_nodes_mm
+from planner.arms.arm_file import load_arm
+from planner.arms.arm_text import arm_toml
+from planner.arms.paper_pose import PaperPose
 from planner.cli import main
 from planner.cli.run_frame import framing
 from planner.cli.run_job import examine
@@ -52,6 +57,32 @@ def test_the_frame_is_gone_round_in_the_air(tmp_path: Path, monkeypatch: pytest.
             assert np.hypot(tips[:, 0] - x, tips[:, 1] - y).min() < 0.1
     assert main(["run", "t.csv", "--frame", "--fast", "--quiet"]) == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == ["d.svg", "t.csv"]
+
+
+def test_a_board_is_told_of_drawn_on_and_gone_round(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("d.svg").write_text(SVG)
+    board = PaperPose(190.0, 0.0, 80.0, tilt_y_rad=-np.pi / 2)
+    six = load_arm("six_joint")
+    six = replace(six, paper=board, closed_form=None, workspace=replace(six.workspace, inner_radius_mm=0.0))
+    Path("board.toml").write_text(arm_toml(six))
+    assert main(["paper", "--arm", "board.toml", "--paper", "a6", "-o", "sheet.pdf"]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("put up the A6 (148 x 105 mm) sheet of 148 x 105 mm; corners at (190, ")
+    (top_left, top_right, _, bottom_left) = (
+        np.array([float(value) for value in corner.split(",")]) for corner in re.findall(r"\(([-\d, ]+)\)", told)[:4]
+    )
+    np.testing.assert_allclose(top_left - top_right, [0.0, 148.0, 0.0], atol=1.0)  # left of who looks from the arm
+    np.testing.assert_allclose(top_left - bottom_left, [0.0, 0.0, 105.0], atol=1.0)
+    assert main(["d.svg", "-o", "t.csv", "--arm", "board.toml", "--paper", "a6", "--quiet"]) == 0
+    job = examine(parser().parse_args(["t.csv", "--arm", "board.toml"]))
+    nodes = link_nodes_mm(job.arm, framing(job).positions)
+    assert nodes[:, -1, 2].min() >= job.arm.pen.clearance_mm - 0.01
+    assert nodes[..., 2].min() >= -1e-3
+    assert main(["run", "t.csv", "--arm", "board.toml", "--fast", "--quiet"]) == 0
+    assert main(["plot", "t.csv", "--arm", "board.toml", "-o", "t.png"]) == 0
 
 
 @pytest.mark.parametrize("arguments", [["--paper", "a0"], ["--paper", "wide"], ["-o", "sheet.doc"]])

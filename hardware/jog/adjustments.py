@@ -11,7 +11,6 @@ import numpy as np
 
 from hardware.compensation.servo_values import own_calibration
 from planner.arms.arm import Arm, Joint, Servo
-from planner.arms.paper_pose import PaperPose
 from planner.arrays import FloatArray
 from planner.errors import UsageError
 
@@ -83,9 +82,7 @@ def parked(arm: Arm, positions: FloatArray) -> Arm:
 
 def paper_under(arm: Arm, tip_mm: FloatArray, card_mm: float) -> Arm:
     """The pen, at `tip_mm` (3,) in the paper's frame, stands on a card of so many mm: the paper is that far below."""
-    pose = arm.paper.T_base_paper
-    pose[:3, 3] += pose[:3, 2] * (float(tip_mm[2]) - card_mm)
-    return replace(arm, paper=PaperPose.of(pose))
+    return replace(arm, paper=arm.paper.moved(arm.paper.normal * (float(tip_mm[2]) - card_mm)))
 
 
 def told(arm: Arm, k: int, position: float) -> float:

@@ -36,7 +36,7 @@ class PenHold(StrEnum):
     CONSTRUCTION = "construction"
     """The chain itself keeps it upright (SCARA): nothing to solve for."""
     TOOL_AXIS = "tool_axis"
-    """An axis of the last frame has to point straight down, spin about it is free: two equations."""
+    """An axis of the last frame has to point straight at the paper, spin about it is free: two equations."""
     FREE = "free"
     """Only the tip is held; the tilt is whatever the chain gives."""
 
@@ -263,10 +263,12 @@ class Arm:
         converted: FloatArray = np.asarray(positions, dtype=np.float64) * self.per_file_unit
         return converted
 
-    def holding(self, height_mm: float) -> Arm:
-        """The arm with a pen whose tip sticks out so much further, for which the paper is so much higher: what is
-        computed of its tip is true of the pen in the file, which stands that far above what is drawn. Exact for a pen
-        that is held upright. Errors: UsageError for an arm that lets it tilt."""
+    def holding(self, height_mm: float, held_along: FloatArray | None = None) -> Arm:
+        """The arm with a pen whose tip sticks out so much further, for which the paper is so much nearer: what is
+        computed of its tip is true of the pen in the file, which stands that far off what is drawn. Exact for a pen
+        that is held as `held_along` (3,) in the base frame, which is straight at the paper for a pen that is held so by
+        its tool axis, straight down for others, where it is left out. Errors: UsageError for an arm that lets it
+        tilt."""
         if not height_mm:
             return self
         if self.pen.hold is PenHold.FREE:
@@ -274,7 +276,9 @@ class Arm:
                 f"height_mm of a pen is {height_mm:g}, and arm {self.name} does not keep its pen upright: give each"
                 " such pen an arm file of its own, with the length that it has"
             )
-        return replace(self, paper=self.paper.raised(height_mm))
+        if held_along is None:
+            held_along = -self.paper.normal if self.pen.hold is PenHold.TOOL_AXIS else np.array([0.0, 0.0, -1.0])
+        return replace(self, paper=self.paper.moved(-height_mm * held_along))
 
     @property
     def column_names(self) -> tuple[str, ...]:

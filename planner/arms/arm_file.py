@@ -48,7 +48,7 @@ Name = Annotated[str, Field(max_length=64), AfterValidator(_is_column_name)]
 _MOST_JOINTS = 16
 _MOST_BYTES = 1_000_000
 _MOST_FAULTS = 20
-_Tilt = Annotated[float, Field(gt=-90, lt=90)]
+_Tilt = Annotated[float, Field(ge=-180, le=180)]
 
 
 class _JointBase(Section):

@@ -11,6 +11,7 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.checking.chain import chain_poses
+from planner.checking.held import held_along
 from planner.checking.links import Capsules, Clearances
 from planner.trajectory import Trajectory
 
@@ -76,7 +77,7 @@ class Sweep:
     """The arm at and between the samples under one interpolation, p points, a number of them for each step.
 
     sample: (p,) the sample at or before the point. tip_mm: (p, 3). lowest_mm: (p,) lowest node of the
-    links. tilt_rad: (p,) angle of the tool axis to straight down. down: (p,) the pen is on the paper, which
+    links. tilt_rad: (p,) angle of the tool axis to how it has to be held. down: (p,) the pen is on the paper, which
     between samples means on it at both. clearances: between links, where they have a thickness.
     """
 
@@ -97,6 +98,7 @@ def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation, per_st
     n_points = (trajectory.n_samples - 1) * per_step + 1
     tip, lowest, tilt = np.empty((n_points, 3)), np.empty(n_points), np.empty(n_points)
     capsules = Capsules(arm, chain_poses(arm, positions[:1]).rows)
+    held = held_along(arm)[:, np.newaxis]
     clearances: list[tuple[FloatArray, IntArray]] = []
     start = 0
     for block in positions_between(positions, interpolation, per_step):
@@ -107,7 +109,9 @@ def sweep(trajectory: Trajectory, arm: Arm, interpolation: Interpolation, per_st
         part = slice(start, start + len(block))
         tip[part] = poses.tip_mm.T
         lowest[part] = np.minimum(poses.lowest_mm, capsules.lowest_mm(poses))
-        tilt[part] = np.arctan2(np.hypot(poses.tool[0], poses.tool[1]), -poses.tool[2])
+        tilt[part] = np.arctan2(
+            np.linalg.norm(np.cross(poses.tool, held, axis=0), axis=0), (poses.tool * held).sum(axis=0)
+        )
         start += len(block)
     point = np.arange(n_points)
     sample, between = point // per_step, point % per_step > 0

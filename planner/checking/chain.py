@@ -15,9 +15,9 @@ from planner.arrays import FloatArray
 class ChainPoses:
     """Where the chain is in n configurations.
 
-    All in the paper's frame but the tool. tip_mm: (3, n) of the pen. lowest_mm: (n,) the height of
+    All in the paper's frame. tip_mm: (3, n) of the pen. lowest_mm: (n,) the height of
     the lowest node of the links, the tip aside: links are straight between nodes, so no part of one is lower.
-    tool: (3, n) direction of `pen.tool_axis` in the base frame. nodes_mm: (n_nodes, 3, n) the nodes, from the base's
+    tool: (3, n) direction of `pen.tool_axis`. nodes_mm: (n_nodes, 3, n) the nodes, from the base's
     origin to the tip; rows: of each segment between two of them, the row that it belongs to, -1 where that is the base.
     """
 
@@ -36,13 +36,9 @@ def chain_poses(arm: Arm, positions: FloatArray, heights_mm: FloatArray | float 
     and after Tx(a), and where the next joint's origin or the tool is; a displacement that is always zero makes no node.
     """
     n = len(positions)
-    yaw, tilt_y, tilt_x = arm.paper.yaw_rad, arm.paper.tilt_y_rad, arm.paper.tilt_x_rad
-    # What the base is to the paper: the paper's place and turns undone, the last one first.
-    base = _undo_turns(
-        np.column_stack((np.eye(3), [-arm.paper.x_mm, -arm.paper.y_mm, -arm.paper.z_mm])), yaw, tilt_y, tilt_x
-    )
+    # What the base is to the paper: the paper's place and turns undone.
+    base = base_vectors(arm, np.column_stack((np.eye(3), [-arm.paper.x_mm, -arm.paper.y_mm, -arm.paper.z_mm])))
     x, y, z, node = (np.repeat(column[:, np.newaxis], n, axis=1) for column in base.T)
-    upright = base[:, :3]
     nodes, rows = [node], []
     for row, (joint, position) in enumerate(zip(arm.joints, positions.T, strict=True)):
         if joint.origin.length_mm:
@@ -81,7 +77,7 @@ def chain_poses(arm: Arm, positions: FloatArray, heights_mm: FloatArray | float 
     heights = (corners[:-1] if rows else corners)[:, 2].copy()
     heights[0] = np.maximum(heights[0], 0.0)  # the base stands beside the paper
     lowest = heights.min(axis=0)
-    return ChainPoses(node, lowest, upright.T @ tool, corners, tuple(rows))
+    return ChainPoses(node, lowest, tool, corners, tuple(rows))
 
 
 def _shift(by: RigidTransform, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
@@ -100,8 +96,10 @@ def _turn(by: RigidTransform, x: FloatArray, y: FloatArray, z: FloatArray) -> tu
     return x, c * y + s * z, c * z - s * y
 
 
-def _undo_turns(vectors: FloatArray, yaw: float, tilt_y: float, tilt_x: float) -> FloatArray:
-    """(3, n) vectors of the base frame as the paper's, which is turned by Rz(yaw), then Ry(tilt_y), then Rx(tilt_x)."""
+def base_vectors(arm: Arm, vectors: FloatArray) -> FloatArray:
+    """(3, n) vectors of the base frame as the paper's, which is turned by Rz(yaw), then Ry(tilt_y), then Rx(tilt_x):
+    undone, the last one first."""
+    yaw, tilt_y, tilt_x = arm.paper.yaw_rad, arm.paper.tilt_y_rad, arm.paper.tilt_x_rad
     a, b, c = vectors
     a, b = np.cos(yaw) * a + np.sin(yaw) * b, np.cos(yaw) * b - np.sin(yaw) * a
     a, c = np.cos(tilt_y) * a - np.sin(tilt_y) * c, np.cos(tilt_y) * c + np.sin(tilt_y) * a

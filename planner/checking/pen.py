@@ -191,7 +191,7 @@ def straight_up_and_down(
 
 
 def upright(trajectory: Trajectory, arm: Arm, sweeps: Sequence[Sweep]) -> list[Finding]:
-    """Angle of the tool axis to straight down while the pen is down, for arms that have to hold it so."""
+    """Angle of the tool axis to how it has to be held while the pen is down, for arms that hold the pen by it."""
     if arm.pen.hold is not PenHold.TOOL_AXIS:
         return []
     return _worst(

@@ -46,14 +46,20 @@ def paper(arguments: list[str]) -> int:
     canvas = canvas_of(model, CanvasKind(options.canvas), model.arm.pen.lift_mm)
     is_wide = canvas.width_mm > canvas.height_mm
     board = board_of(canvas, options.paper, Orientation(options.orientation), 0.0, is_wide)
-    lines = [board.where()]
+    where = board.where(model.arm.paper)
+    lines = [where]
     if options.output:
         from planner.plots.figure_file import picture_format, save_figure
         from planner.plots.placement_sheet import plot_placement_sheet
 
         picture_format(options.output)
         figure, page = plot_placement_sheet(
-            canvas, board.sheet, paper_in_reach(model).ring_mm, model.arm.name, board.where().partition(";")[0]
+            canvas,
+            board.sheet,
+            paper_in_reach(model).ring_mm,
+            model.arm.name,
+            where.partition(";")[0],
+            model.arm.paper,
         )
         save_figure(figure, options.output)
         lines.append(f"wrote {options.output}: print it on {page} at 100 %")

@@ -17,6 +17,8 @@ from planner.errors import ArmFileError
 
 _MARGIN = 0.06
 """Of a joint's range: a curve is laid out so far beyond the limits at each end."""
+_UPRIGHT = 1e-9
+"""Cosine of a tilt that is a right angle but for rounding."""
 _ROW = 0.04
 """Rows of a table that is written are so far apart, in rad; a slide has as many."""
 
@@ -138,4 +140,7 @@ def _base_of(paper: PaperPose) -> FloatArray:
     """(6,) the base in the paper's frame, in the angles of Geometry."""
     T = paper.T_paper_base
     tilt_x = np.arcsin(np.clip(T[2, 1], -1.0, 1.0))
-    return np.array([*T[:3, 3], np.arctan2(-T[0, 1], T[1, 1]), tilt_x, np.arctan2(-T[2, 0], T[2, 2])])
+    yaw, tilt_y = np.arctan2(-T[0, 1], T[1, 1]), np.arctan2(-T[2, 0], T[2, 2])
+    if np.hypot(T[0, 1], T[1, 1]) < _UPRIGHT:  # the two turn about the same axis
+        yaw, tilt_y = np.arctan2(T[1, 0], T[0, 0]), 0.0
+    return np.array([*T[:3, 3], yaw, tilt_x, tilt_y])

@@ -110,7 +110,11 @@ def _dls_step(kinematics: Kinematics) -> CompiledFunction:
     tip, axis, jacobian = kinematics.symbolic_jacobian(joints)
     points = arm.pen.hold is PenHold.TOOL_AXIS
     to_cm = casadi.diag(casadi.DM([1 / MM_PER_CM] * 3 + [_LEVER_CM if points else 1.0] * 3))
-    turn = casadi.cross(axis, casadi.DM([0, 0, -1])) if points else casadi.SX.zeros(3)
+    turn = (
+        casadi.cross(axis, casadi.DM(arm.paper.T_paper_base[:3, :3] @ kinematics.held_along))
+        if points
+        else casadi.SX.zeros(3)
+    )
     error = target - tip
     joint_unit = casadi.diag(
         casadi.DM([MM_PER_CM if joint.kind is JointKind.PRISMATIC else 1.0 for joint in arm.joints])

@@ -29,8 +29,10 @@ class Kinematics:
     """Forward kinematics, Jacobians, the task and the clearances of one arm, as functions of its independent joints.
 
     The task is what a configuration has to meet at a pen target: the tip's place (3 rows, mm) and, where the
-    tool axis has to point down, its horizontal components (which have to be zero), seen from the turning base.
-    An axis that stays in a plane with the base axis by construction has only one of them.
+    tool axis has to point straight at the paper, its components along the paper (which have to be zero), seen from the
+    turning base. An axis that stays in a plane with the base axis by construction has only one of them: such a pen is
+    held to the base's vertical, as long as the paper is nearly level.
+    held_along: (3,) how a pen that is held points, in the base frame.
     """
 
     def __init__(self, arm: Arm) -> None:
@@ -42,7 +44,10 @@ class Kinematics:
         self.frames, self.last = frames, last
         self.tip = last[:3, 3]
         self.axis = last[:3, :3] @ casadi.DM(arm.pen.tool_axis)
-        self.task = casadi.vertcat(self.tip, *self._pointing()) if arm.pen.hold is PenHold.TOOL_AXIS else self.tip
+        self.task, self.held_along = self.tip, np.array([0.0, 0.0, -1.0])
+        if arm.pen.hold is PenHold.TOOL_AXIS:
+            pointing, normal = self._pointing()
+            self.task, self.held_along = casadi.vertcat(self.tip, *pointing), -normal
         self.nodes = casadi.horzcat(*corners).T
 
     @cached_property
@@ -57,16 +62,31 @@ class Kinematics:
         alone = 0 in arm.independent_joints and all(
             other != 0 for coupling in arm.couplings for other, _ in coupling.coefficients
         )
-        square = arm.paper.T_base_paper[2, 2] >= np.cos(_NEARLY_SQUARE_RAD)
         first = arm.joints[0]
-        return first.kind is JointKind.REVOLUTE and first.origin.is_identity and alone and bool(square)
+        return first.kind is JointKind.REVOLUTE and first.origin.is_identity and alone and self._nearly_level
 
-    def _pointing(self) -> list[casadi.SX]:
-        """The horizontal components of the tool axis that are not zero by construction: along and across the plane of
-        the first link, if the axis stays in one, or that of a joint that stays level and square to the tool axis."""
+    @property
+    def _nearly_level(self) -> bool:
+        """Whether the paper's normal is the base's vertical, or nearly so."""
+        return bool(self.arm.paper.normal[2] >= np.cos(_NEARLY_SQUARE_RAD))
+
+    def _pointing(self) -> tuple[list[casadi.SX], FloatArray]:
+        """What is zero where the pen points straight at the paper, and the paper's normal, (3,) in the base frame. An
+        arm that cannot lean its pen sideways cannot follow a paper that is not quite level: it holds it to the
+        vertical, which is given as the normal then."""
+        if self._nearly_level:
+            upright = self._leaning(self.arm.paper.T_base_paper[:3, :3])
+            if len(upright) < 2:
+                return upright, np.array([0.0, 0.0, 1.0])
+        return self._leaning(np.eye(3)), self.arm.paper.normal
+
+    def _leaning(self, turn: FloatArray) -> list[casadi.SX]:
+        """The components of the tool axis, turned (3, 3) from the paper's frame, square to z that are not zero by
+        construction: along and across the plane of the first link, if the axis stays in one, or that of a joint that
+        stays square to z and to the tool axis."""
+        axis = casadi.DM(turn) @ self.axis
         if self.turns_over_paper:
             c, s = casadi.cos(self.joints[0]), casadi.sin(self.joints[0])
-            axis = casadi.DM(self.arm.paper.T_base_paper[:3, :3]) @ self.axis
             components = casadi.vertcat(c * axis[0] + s * axis[1], c * axis[1] - s * axis[0])
             values = self._probed(components)
             if (np.abs(values).max(axis=1) > _ZERO).all():  # the plane may stand askew to the first link's frame
@@ -75,10 +95,10 @@ class Kinematics:
                     return [casadi.DM(turns[:, 0]).T @ components]
             return self._not_always_zero(components)
         for frame in self.frames:
-            side = frame[:3, 2]
-            if not self._not_always_zero(casadi.vertcat(side[2], casadi.dot(side, self.axis))):
-                return self._not_always_zero(side[1] * self.axis[0] - side[0] * self.axis[1])
-        return self._not_always_zero(self.axis[:2])
+            side = casadi.DM(turn) @ frame[:3, 2]
+            if not self._not_always_zero(casadi.vertcat(side[2], casadi.dot(side, axis))):
+                return self._not_always_zero(side[1] * axis[0] - side[0] * axis[1])
+        return self._not_always_zero(axis[:2])
 
     def _not_always_zero(self, values: casadi.SX) -> list[casadi.SX]:
         """Those of the values that some configuration makes other than zero."""

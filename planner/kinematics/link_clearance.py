@@ -57,6 +57,7 @@ class LinkClearance:
 
     def __init__(self, arm: Arm, nodes_mm: Callable[[FloatArray], FloatArray]) -> None:
         self._arm, self._nodes_mm = arm, nodes_mm
+        self._base_mm = arm.paper.T_paper_base[:3, 3]  # where the chain begins
         segments = _segments(arm)
         lengths = [length for _, length in segments]
         with_length = [segment for segment, length in enumerate(lengths) if length > 0]
@@ -72,7 +73,8 @@ class LinkClearance:
 
         self._held = [pair for pair in pairs if held_together(*pair)]
         self._apart = [pair for pair in pairs if not held_together(*pair)]
-        # The arm stands on the paper with its first corner, and the last row carries the pen.
+        # The arm stands with its first corner, beside the paper or anywhere, and the last row carries the pen.
+        self._first_length = with_length[0] if with_length else 0
         last = max((segments[segment][0] for segment in with_length), default=0)
         pen_begins = min((segment for segment in with_length if segments[segment][0] == last), default=0)
         self._corners = [
@@ -92,7 +94,7 @@ class LinkClearance:
         if not self.names:
             return np.full(len(independent), np.inf), np.zeros(len(independent), dtype=np.int64)
         nodes = self._nodes_mm(independent).transpose(1, 0, 2)
-        corners = np.concatenate((np.zeros((1, len(independent), 3)), nodes))  # the chain begins at the base's origin
+        corners = np.concatenate((np.broadcast_to(self._base_mm, (1, *nodes.shape[1:])), nodes))
         clearances = [
             _fold_mm(
                 corners[one.end],
@@ -112,6 +114,13 @@ class LinkClearance:
         clearances += [corners[corner][:, 2] - capsule.half_mm for capsule, corner in self._corners]
         stacked = np.stack(clearances)
         return stacked.min(axis=0), stacked.argmin(axis=0)
+
+    def lowest_mm(self, independent: FloatArray) -> FloatArray:
+        """(n,) height over the paper of the lowest corner of the chain in configurations (n, n_independent), but for
+        the tip and for the base, which may stand lower than a paper beside it."""
+        heights = self._nodes_mm(independent)[:, self._first_length : -1, 2]
+        lowest: FloatArray = heights.min(axis=1, initial=np.inf)
+        return lowest
 
     def collisions(self, sequences: Sequence[FloatArray], kept_mm: float = KEPT_MM) -> list[Collision | None]:
         """For each sequence of configurations (n, n_joints), n > 0, where clearance is least, if it is less than

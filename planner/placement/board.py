@@ -6,9 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from planner.arms.paper_pose import PaperPose
+from planner.arrays import FloatArray
 from planner.errors import UsageError
 from planner.paper_size import Orientation, PaperSize
 from planner.workspace.canvas import Canvas
+
+_STRAIGHT_RAD = float(np.radians(5.0))
+"""Up to so far turned, a paper lies level and straight before the base."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -26,19 +31,33 @@ class Board:
         """Width and height within the margin."""
         return self.rectangle.width_mm - 2 * self.margin_mm, self.rectangle.height_mm - 2 * self.margin_mm
 
-    def where(self) -> str:
-        """Where to lay the paper, in words."""
+    def where(self, paper: PaperPose) -> str:
+        """Where to lay the paper, in words: before the base's axis where it lies level and straight before it, in the
+        base frame elsewhere."""
         sheet = self.sheet or self.rectangle
-        what = f"lay the {self.size} sheet" if self.size else "lay paper"
-        corners = ", ".join(f"({x:.0f}, {y:.0f})" for x, y in np.round(sheet.corners_arm_mm) + 0.0)  # no -0
-        middle = (sheet.left_mm + sheet.right_mm) / 2
+        what = f"the {self.size} sheet" if self.size else "paper"
+        corners_mm = np.column_stack((sheet.corners_arm_mm, np.zeros(4)))
+        if np.trace(paper.T_base_paper[:3, :3]) < 1.0 + 2.0 * np.cos(_STRAIGHT_RAD):
+            put = "lay" if paper.normal[2] > np.cos(_STRAIGHT_RAD) else "put up"
+            return (
+                f"{put} {what} of {sheet.width_mm:.0f} x {sheet.height_mm:.0f} mm; corners at"
+                f" {_in_words(paper.to_base(corners_mm))} in the base frame, first its top left and top right"
+            )
+        x, y, _ = paper.T_paper_base[:3, 3].tolist()
+        corners = _in_words(paper.to_base(corners_mm)[:, :2])
+        middle = (sheet.left_mm + sheet.right_mm) / 2 - y
         beside = (
             "in the middle" if abs(middle) < 0.5 else f"{abs(middle):.0f} mm to the {'left' if middle > 0 else 'right'}"
         )
         return (
-            f"{what} {sheet.near_mm:.0f} to {sheet.far_mm:.0f} mm before the base's axis, {sheet.width_mm:.0f} mm wide,"
-            f" {beside}; corners at {corners}"
+            f"lay {what} {sheet.near_mm - x:.0f} to {sheet.far_mm - x:.0f} mm before the base's axis,"
+            f" {sheet.width_mm:.0f} mm wide, {beside}; corners at {corners}"
         )
+
+
+def _in_words(places_mm: FloatArray) -> str:
+    rounded = np.round(places_mm) + 0.0  # no -0
+    return ", ".join("(" + ", ".join(f"{value:.0f}" for value in place) + ")" for place in rounded.tolist())
 
 
 def board_of(

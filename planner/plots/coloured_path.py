@@ -51,6 +51,7 @@ def plot_speed(
             [xy[:1], xy[1:][drawn]],
             canvas_corners_mm,
             reach_mm,
+            paper=trajectory.paper,
             right=_BAR_GAP + _BAR + _BAR_LABELS - PAPER_RIGHT,
         )
         colour_lines(sheet, axes, xy, drawn, speed, float(speed[fastest]), "speed of the pen (mm/s)")
@@ -92,6 +93,7 @@ def plot_error(
             [xy[:1], xy[1:][drawn]],
             canvas_corners_mm,
             reach_mm,
+            paper=trajectory.paper,
             right=right,
             bottom=_BELOW_BOTTOM + _BELOW + _BELOW_GAP,
         )

@@ -17,7 +17,7 @@ from planner.comparison.targets import Targets
 from planner.counted import counted
 from planner.plots.comparison_look import line_of, method_handles, shown
 from planner.plots.look import LIMIT_DASHES, USUAL, Look
-from planner.plots.paper import place_axes, view_mm
+from planner.plots.paper import base_of, place_axes, view_mm
 from planner.plots.sheet import Sheet
 
 _LEFT, _BOTTOM, _RIGHT, _BETWEEN, _TITLE = 6.2, 4.2, 1.8, 4.0, 1.6  # em
@@ -33,7 +33,7 @@ def plot_along_drawing(comparison: Comparison, look: Look = USUAL) -> Figure:
     where no method solves a target."""
     arm, targets = comparison.arm, comparison.targets
     able = shown(comparison)
-    low, high = view_mm([targets.tips_mm[:, :2]], None)
+    low, high = view_mm([targets.tips_mm[:, :2]], None, base_of(arm.paper))
     along = _way_drawn_mm(targets)
     with look.style():
         sheet = Sheet(look)
@@ -44,7 +44,7 @@ def plot_along_drawing(comparison: Comparison, look: Look = USUAL) -> Figure:
         for place, (result, measured) in enumerate(able):
             axes = sheet.panel(_LEFT + place * (width + _BETWEEN), bottom, width, height)
             _draw_map(axes, arm, targets, result, measured, look)
-            place_axes(axes, low, high, width, look.colours)
+            place_axes(axes, low, high, width, look.colours, base_of(arm.paper))
             if place:
                 axes.set_ylabel("")
         bottom -= _BOTTOM

@@ -48,7 +48,7 @@ def plot_drawing(
     inks = inks_of(trajectory, xy[:, ::-1])
     with look.style():
         sheet = Sheet(look)
-        axes = paper_panel(sheet, [xy, wanted_line], canvas_corners_mm, reach_mm)
+        axes = paper_panel(sheet, [xy, wanted_line], canvas_corners_mm, reach_mm, paper=trajectory.paper)
         axes.add_patch(paper_patch(paper_sides_mm(trajectory, xy), colours))
         pt_per_mm = pt_per_mm_of(sheet, axes)
         halo_pt = max(ink.width_mm for ink in inks) * pt_per_mm + _HALO * look.letter_pt

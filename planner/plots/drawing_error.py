@@ -21,7 +21,7 @@ def plot_drawing_error(
     wanted: Sequence[FloatArray], drawn: Sequence[FloatArray], heading: str, remark: str, look: Look = USUAL
 ) -> Figure:
     """Lines (n, 2) in arm millimetres: on the left those wanted, on the right those drawn over those wanted."""
-    low, high = view_mm([*wanted, *drawn], None, base=False)
+    low, high = view_mm([*wanted, *drawn], None, None)
     colours = look.colours
     layers = [
         ("wanted", [("wanted", wanted, colours.wanted, 1.0)]),
@@ -33,7 +33,7 @@ def plot_drawing_error(
         height = float(np.clip((high[0] - low[0]) * width / (high[1] - low[1]), _LOWEST, 1.25 * sheet.width))
         for number, (title, lines_of) in enumerate(layers):
             axes = sheet.panel(PAPER_LEFT + number * (width + PAPER_LEFT + PAPER_RIGHT), PAPER_BOTTOM, width, height)
-            place_axes(axes, low, high, width, colours)
+            place_axes(axes, low, high, width, colours, None)
             axes.set_title(title, loc="left")
             for label, lines, color, thickness in lines_of:
                 draw_lines(axes, lines, label, color, thickness)

@@ -42,7 +42,7 @@ def plot_expected(prediction: Prediction, heading: str, remark: str, look: Look 
     along, colours = prediction.along, look.colours
     band_mm = _95_OF_100 * along.off_mm
     around = [along.meant_mm + band_mm[:, None], along.meant_mm - band_mm[:, None], along.one_mm[along.one_inks]]
-    low, high = view_mm(around, None, base=False)
+    low, high = view_mm(around, None, None)
     causes = [cause for cause in prediction.causes if cause.mm >= _LEAST_MM][:_MOST_CAUSES]
     with look.style():
         sheet = Sheet(look)
@@ -53,7 +53,7 @@ def plot_expected(prediction: Prediction, heading: str, remark: str, look: Look 
         lines = sheet.panel(PAPER_LEFT, bottom, width, height)
         paper = sheet.panel(2 * PAPER_LEFT + PAPER_RIGHT + width, bottom, width, height)
         for axes, title in ((lines, "expected lines"), (paper, "expected error over the paper")):
-            place_axes(axes, low, high, width, colours)
+            place_axes(axes, low, high, width, colours, None)
             axes.set_title(title, loc="left")
         pt_per_mm = width * look.letter_pt / float(high[1] - low[1])
         legend = _lines(lines, along, band_mm, pt_per_mm, look)

@@ -20,6 +20,7 @@ from planner.plots.paper import (
     PAPER_BOTTOM,
     PAPER_LEFT,
     PAPER_RIGHT,
+    base_of,
     canvas_outline,
     half_ring,
     paper_patch,
@@ -59,9 +60,10 @@ class Film:
     def _lay_out(self, canvas_corners_mm: FloatArray | None, reach_mm: tuple[float, float] | None, look: Look) -> None:
         motion, colours = self.motion, look.colours
         probes = motion.nodes_mm(np.linspace(motion.begin_s, motion.end_s, _N_VIEW_PROBES))
-        side = seen_from_the_side(probes)
+        side = seen_from_the_side(motion.arm, probes)
         corners = np.empty((0, 2)) if canvas_corners_mm is None else canvas_corners_mm
-        low, high = view_mm([probes[..., :2].reshape(-1, 2), motion.tip_mm[:, :2], corners], reach_mm)
+        base_mm = base_of(motion.arm.paper)
+        low, high = view_mm([probes[..., :2].reshape(-1, 2), motion.tip_mm[:, :2], corners], reach_mm, base_mm)
         side_low, side_high = side.min(axis=(0, 1)), side.max(axis=(0, 1))
         side_low[1] = min(side_low[1], 0.0)
         margin_mm = _MARGIN * float((high - low).max())
@@ -78,9 +80,9 @@ class Film:
             (side_high[0] - side_low[0]) * em_per_mm,
             (side_high[1] - side_low[1]) * em_per_mm,
         )
-        place_axes(above, low, high, width, colours, base_mm=(float(probes[0, 0, 0]), float(probes[0, 0, 1])))
+        place_axes(above, low, high, width, colours, base_mm)
         if reach_mm is not None:
-            above.add_patch(half_ring(reach_mm, colours))
+            above.add_patch(half_ring(reach_mm, colours, base_mm))
         if len(corners):
             above.add_patch(canvas_outline(corners, colours))
         above.add_patch(paper_patch(paper_sides_mm(motion.trajectory, motion.tip_mm[:, :2]), colours))
@@ -88,7 +90,7 @@ class Film:
             xlim=(side_low[0], side_high[0]),
             ylim=(side_low[1], side_high[1]),
             xlabel="from the base (mm)",
-            ylabel="height (mm)",
+            ylabel="over the paper (mm)",
         )
         tick_mm = round_step(_TICK_EM / em_per_mm)
         beside.xaxis.set_major_locator(MultipleLocator(tick_mm))
@@ -159,7 +161,7 @@ class Film:
                 self._above.draw_artist(artist)
 
     def _place_arm(self, nodes_mm: FloatArray, time_s: float, stroke: int) -> None:
-        seen = (nodes_mm[0, :, 1::-1], seen_from_the_side(nodes_mm)[0])
+        seen = (nodes_mm[0, :, 1::-1], seen_from_the_side(self.motion.arm, nodes_mm)[0])
         for (axes, links, tip), corners in zip(self._views, seen, strict=True):
             links.set_data(*corners.T)
             tip.set_data(*corners[-1:].T)

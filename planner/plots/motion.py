@@ -17,6 +17,8 @@ USUAL_FPS = 20.0
 _USUAL_LENGTH_S = 20.0
 _MOST_FRAMES = 200_000
 _CELL_MM = 0.05
+_LEVEL = 0.7
+"""Cosine of the tilt up to which a paper lies rather than hangs."""
 _BLOCK = 16_384
 
 
@@ -116,11 +118,18 @@ def motion_of(
     return motion
 
 
-def seen_from_the_side(nodes_mm: FloatArray) -> FloatArray:
-    """(n, n_nodes, 2) distance from the base along the bearing of the tip, and height, of nodes (n, n_nodes, 3), the
-    first of which is the base: an arm that turns about its base is seen square on."""
+def is_seen_square_on(arm: Arm) -> bool:
+    """Whether a view from the side turns with the arm: about its base, where the paper lies level."""
+    return bool(arm.paper.normal[2] > _LEVEL)
+
+
+def seen_from_the_side(arm: Arm, nodes_mm: FloatArray) -> FloatArray:
+    """(n, n_nodes, 2) distance from the base and height over the paper of nodes (n, n_nodes, 3), the first of which is
+    the base: along the bearing of the tip, so that an arm that turns about its base is seen square on, and along x of
+    the paper where that is a board or a ceiling."""
     from_base = nodes_mm[..., :2] - nodes_mm[:, :1, :2]
-    bearing = np.arctan2(from_base[:, -1, 1], from_base[:, -1, 0])[:, np.newaxis]
+    turns = float(is_seen_square_on(arm))
+    bearing = turns * np.arctan2(from_base[:, -1, 1], from_base[:, -1, 0])[:, np.newaxis]
     along = from_base[..., 0] * np.cos(bearing) + from_base[..., 1] * np.sin(bearing)
     seen: FloatArray = np.stack((along, nodes_mm[..., 2]), axis=-1)
     return seen

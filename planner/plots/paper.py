@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon, Rectangle, Wedge
 from matplotlib.ticker import MultipleLocator
 
+from planner.arms.paper_pose import PaperPose
 from planner.arrays import BoolArray, FloatArray
 from planner.plots.look import Colours
 from planner.plots.sheet import Sheet
@@ -29,31 +30,41 @@ def paper_panel(
     canvas_corners_mm: FloatArray | None,
     reach_mm: tuple[float, float] | None,
     *,
+    paper: PaperPose,
     bottom: float = 0.0,
     right: float = 0.0,
 ) -> Axes:
     """A panel that shows the paper with all of some lines (n, 2), as wide as the sheet and as high as it needs to be,
-    with the ring and the canvas in it where they are known. bottom, right: em left free beside it."""
+    with the ring and the canvas in it where they are known. paper: where it lies. bottom, right: em left free beside
+    it."""
+    base_mm = base_of(paper)
     canvas = np.empty((0, 2)) if canvas_corners_mm is None else np.asarray(canvas_corners_mm, dtype=np.float64)
-    low, high = view_mm([*lines_mm, canvas], reach_mm)
+    low, high = view_mm([*lines_mm, canvas], reach_mm, base_mm)
     width = sheet.width - PAPER_LEFT - PAPER_RIGHT - right
     height = float(np.clip((high[0] - low[0]) * width / (high[1] - low[1]), 18.0, 1.25 * sheet.width))
     axes = sheet.panel(PAPER_LEFT, bottom + PAPER_BOTTOM, width, height)
-    place_axes(axes, low, high, width, sheet.look.colours)
+    place_axes(axes, low, high, width, sheet.look.colours, base_mm)
     if reach_mm is not None:
-        axes.add_patch(half_ring(reach_mm, sheet.look.colours))
+        axes.add_patch(half_ring(reach_mm, sheet.look.colours, base_mm))
     if len(canvas):
         axes.add_patch(canvas_outline(canvas, sheet.look.colours))
     return axes
 
 
+def base_of(paper: PaperPose) -> tuple[float, float]:
+    """Where on the paper the base is, seen square to it."""
+    x, y, _ = paper.T_paper_base[:3, 3].tolist()
+    return x, y
+
+
 def view_mm(
-    points: Sequence[FloatArray], reach_mm: tuple[float, float] | None, *, base: bool = True
+    points: Sequence[FloatArray], reach_mm: tuple[float, float] | None, base_mm: tuple[float, float] | None
 ) -> tuple[FloatArray, FloatArray]:
     """Lowest and highest arm x and y (2,) to show: all points (n, 2), the half ring, the base where it is to be seen,
     and a margin."""
-    ring = [] if reach_mm is None else [np.array([[0.0, -reach_mm[1]], [reach_mm[1], reach_mm[1]]])]
-    everything = np.concatenate([*points, *ring, np.zeros((1 if base else 0, 2))])
+    base = np.array([] if base_mm is None else [base_mm]).reshape(-1, 2)
+    ring = [] if reach_mm is None else [base + np.array([[0.0, -reach_mm[1]], [reach_mm[1], reach_mm[1]]])]
+    everything = np.concatenate([*points, *ring, base])
     low, high = np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)
     margin = max(0.03 * float((high - low).max()), 5.0)
     return low - margin, high + margin
@@ -65,9 +76,9 @@ def place_axes(
     high: FloatArray,
     width_em: float,
     colours: Colours,
-    base_mm: tuple[float, float] = (0.0, 0.0),
+    base_mm: tuple[float, float] | None,
 ) -> None:
-    """Axes as seen from behind the base, with the base marked: arm y grows to the left, arm x upwards.
+    """Axes as seen from behind the base, the base marked, if it is to be: arm y grows to the left, arm x upwards.
 
     width_em: of the axes, so that the ticks get room. base_mm: where the base stands in the paper's frame.
     """
@@ -79,6 +90,8 @@ def place_axes(
     axes.yaxis.set_major_locator(MultipleLocator(tick_mm))
     axes.set_xlabel("arm y (mm)")
     axes.set_ylabel("arm x (mm)")
+    if base_mm is None:
+        return
     axes.plot(
         base_mm[1],
         base_mm[0],
@@ -92,11 +105,13 @@ def place_axes(
     )
 
 
-def half_ring(reach_mm: tuple[float, float], colours: Colours, *, face: str | None = None) -> Wedge:
+def half_ring(
+    reach_mm: tuple[float, float], colours: Colours, base_mm: tuple[float, float], *, face: str | None = None
+) -> Wedge:
     """What the pen reaches in front of the base, between two radii."""
     inner, outer = reach_mm
     return Wedge(
-        (0.0, 0.0),
+        base_mm[::-1],
         outer,
         0.0,
         180.0,

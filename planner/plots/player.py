@@ -16,8 +16,8 @@ import numpy.typing as npt
 from planner.arrays import FloatArray
 from planner.plots.ink import inks_of
 from planner.plots.look import USUAL, Look
-from planner.plots.motion import Motion, seen_from_the_side
-from planner.plots.paper import paper_sides_mm, view_mm
+from planner.plots.motion import Motion, is_seen_square_on, seen_from_the_side
+from planner.plots.paper import base_of, paper_sides_mm, view_mm
 
 _MOST = 20_000
 _POINTS_A_POSE = 5
@@ -37,11 +37,13 @@ def film_of(
     trajectory = motion.trajectory
     n_poses = int(np.clip((motion.end_s - motion.begin_s) * trajectory.rate_hz + 1, 2, most))
     nodes_mm = motion.nodes_mm(np.linspace(motion.begin_s, motion.end_s, n_poses))
-    side = seen_from_the_side(nodes_mm)
+    side = seen_from_the_side(motion.arm, nodes_mm)
     samples, begins = motion.pen_lines(_POINTS_A_POSE * most)
     inks = inks_of(trajectory, motion.tip_mm[:, :2])
     corners = np.empty((0, 2)) if canvas_corners_mm is None else canvas_corners_mm
-    low, high = view_mm([nodes_mm[..., :2].reshape(-1, 2), motion.tip_mm[:, :2], corners], reach_mm)
+    low, high = view_mm(
+        [nodes_mm[..., :2].reshape(-1, 2), motion.tip_mm[:, :2], corners], reach_mm, base_of(motion.arm.paper)
+    )
     margin_mm = 0.04 * float((high - low).max())
     scale_mm = max(float(np.abs(nodes_mm).max()), float(np.abs(motion.tip_mm).max()), 1.0) / _LARGEST
     near, far, right, left = paper_sides_mm(trajectory, motion.tip_mm[:, :2])
@@ -62,6 +64,8 @@ def film_of(
         "inks": [[ink.colour, ink.width_mm] for ink in inks],
         "paper": [[near, right], [far, right], [far, left], [near, left]],
         "reach": reach_mm,
+        "base": base_of(motion.arm.paper),
+        "level": is_seen_square_on(motion.arm),
         "canvas": corners.tolist(),
         "above": [*low.tolist(), *high.tolist()],
         "beside": [

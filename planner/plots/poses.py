@@ -10,7 +10,7 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.plots.look import USUAL, Look
 from planner.plots.motion import arm_nodes, seen_from_the_side
-from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, canvas_outline, place_axes, view_mm
+from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, base_of, canvas_outline, place_axes, view_mm
 from planner.plots.sheet import Sheet
 
 _TITLE, _BETWEEN = 1.6, 2.0
@@ -21,9 +21,9 @@ _HIGHEST = 1.2
 def plot_poses(arm: Arm, joints: FloatArray, canvas_corners_mm: FloatArray | None, look: Look = USUAL) -> Figure:
     """joints: (n, n_joints), the first drawn boldest."""
     nodes_mm = arm_nodes(arm, joints)
-    side = seen_from_the_side(nodes_mm)
+    side = seen_from_the_side(arm, nodes_mm)
     corners = np.empty((0, 2)) if canvas_corners_mm is None else canvas_corners_mm
-    low, high = view_mm([nodes_mm[..., :2].reshape(-1, 2), corners], None)
+    low, high = view_mm([nodes_mm[..., :2].reshape(-1, 2), corners], None, base_of(arm.paper))
     with look.style():
         sheet = Sheet(look)
         width = (sheet.width - 2 * (PAPER_LEFT + PAPER_RIGHT) - _BETWEEN) / 2
@@ -38,7 +38,7 @@ def plot_poses(arm: Arm, joints: FloatArray, canvas_corners_mm: FloatArray | Non
         beside.set_xlabel("from the base (mm)")
         beside.set_ylabel("over the paper (mm)")
         beside.set_title("from the side", loc="left")
-        place_axes(above, low, high, width, look.colours)
+        place_axes(above, low, high, width, look.colours, base_of(arm.paper))
         above.set_title("from above", loc="left")
         if len(corners):
             above.add_patch(canvas_outline(corners, look.colours))

@@ -12,9 +12,10 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
+from planner.arms.paper_pose import PaperPose
 from planner.arrays import FloatArray
 from planner.plots.look import LIMIT_DASHES, USUAL, Look
-from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, canvas_outline, half_ring, place_axes, view_mm
+from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, base_of, canvas_outline, half_ring, place_axes, view_mm
 from planner.plots.sheet import Sheet
 from planner.settings import CanvasKind
 from planner.workspace.paper_map import PaperMap
@@ -29,17 +30,19 @@ def plot_workspace(
     figures: PaperMap,
     canvases_mm: Mapping[CanvasKind, FloatArray],
     ring_mm: tuple[float, float] | None,
+    paper: PaperPose,
     look: Look = USUAL,
 ) -> Figure:
     """The ring with the canvases, and beside it two maps, all in arm millimetres: manipulability in parts of its
     greatest on the paper, and the tip's error along the paper per degree (or mm) of error of the joints.
 
     canvases_mm: corners (4, 2) of each, in order around it; the usable one is on the maps too.
-    ring_mm: inner and outer radius of the half ring, where what is reached is one.
+    ring_mm: inner and outer radius of the half ring, where what is reached is one. paper: where it lies.
     """
+    base_mm = base_of(paper)
     is_reached = np.isfinite(figures.manipulability)
     reached = [np.column_stack((figures.x_mm[is_reached], figures.y_mm[is_reached]))] if ring_mm is None else []
-    low, high = view_mm([*canvases_mm.values(), *reached], ring_mm)
+    low, high = view_mm([*canvases_mm.values(), *reached], ring_mm, base_mm)
     slimness = float((high[0] - low[0]) / (high[1] - low[1]))
     greatest = float(np.nanmax(figures.manipulability))
     good_is_bright = look.colours.colour_map(_N_COLOURS)
@@ -56,16 +59,16 @@ def plot_workspace(
         ring_width = sheet.width - outside - map_width
         map_height, ring_height = map_width * slimness, ring_width * slimness
         ring = sheet.panel(PAPER_LEFT, PAPER_BOTTOM, ring_width, ring_height)
-        place_axes(ring, low, high, ring_width, look.colours)
-        _draw_canvases(ring, canvases_mm, ring_mm, look)
+        place_axes(ring, low, high, ring_width, look.colours, base_mm)
+        _draw_canvases(ring, canvases_mm, ring_mm, base_mm, look)
         left = PAPER_LEFT + ring_width + _BETWEEN + PAPER_LEFT
         for place, (values, label, colour_map) in enumerate(maps):
             axes = sheet.panel(left, PAPER_BOTTOM + (1 - place) * (map_height + between), map_width, map_height)
             _draw_map(sheet, axes, figures, values, colour_map)
-            place_axes(axes, low, high, map_width, look.colours)
+            place_axes(axes, low, high, map_width, look.colours, base_mm)
             axes.set_title(label, loc="left", size=look.letter_pt, weight="bold")
             if ring_mm is not None:
-                axes.add_patch(half_ring(ring_mm, look.colours, face="none"))
+                axes.add_patch(half_ring(ring_mm, look.colours, base_mm, face="none"))
             if CanvasKind.USABLE in canvases_mm:
                 canvas = canvas_outline(canvases_mm[CanvasKind.USABLE], look.colours, face="none", edge="black")
                 axes.add_patch(canvas)
@@ -80,11 +83,15 @@ def plot_workspace(
 
 
 def _draw_canvases(
-    axes: Axes, canvases_mm: Mapping[CanvasKind, FloatArray], ring_mm: tuple[float, float] | None, look: Look
+    axes: Axes,
+    canvases_mm: Mapping[CanvasKind, FloatArray],
+    ring_mm: tuple[float, float] | None,
+    base_mm: tuple[float, float],
+    look: Look,
 ) -> None:
     colours = look.colours
     if ring_mm is not None:
-        axes.add_patch(half_ring(ring_mm, colours))
+        axes.add_patch(half_ring(ring_mm, colours, base_mm))
     styles = {
         CanvasKind.DOCUMENTED: (colours.limit, LIMIT_DASHES),
         CanvasKind.OPTIMAL: (colours.lifting, (0, (1, 1))),

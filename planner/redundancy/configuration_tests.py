@@ -19,6 +19,8 @@ LIMIT_MARGIN = 0.02
 LINK_CLEARANCE_MM = 1.0
 """Clearance that configurations leave between links that have a thickness, for the same."""
 
+_ROUNDING_MM = 1e-6
+
 _STILL_MM_S = 1e-6
 """A tip that is slower cannot move that way at all."""
 
@@ -74,8 +76,7 @@ def _keeps_limits(kinematics: Kinematics, independent: FloatArray) -> BoolArray:
 
 
 def _links_above_paper(kinematics: Kinematics, independent: FloatArray) -> BoolArray:
-    base_mm = float(kinematics.arm.paper.T_paper_base[2, 3])  # the base may stand lower than the paper
-    above: BoolArray = np.all(kinematics.nodes_mm(independent)[:, :-1, 2] >= min(base_mm, 0.0) - 1e-6, axis=1)
+    above: BoolArray = kinematics.clearance.lowest_mm(independent) >= -_ROUNDING_MM
     return above
 
 
@@ -142,12 +143,16 @@ FREE = ConfigurationTest(
 )
 """What is not free is not quick either: this tells it apart where an arm is refused."""
 
+LINKS_ABOVE = ConfigurationTest(
+    _links_above_paper, "have a joint below the paper", "raise the base (d_mm of the first joint)"
+)
+
 TESTS = (
     ConfigurationTest(
         _keeps_limits, "have a joint beyond its limits or nearly so", "widen these limits, or change theta_deg"
     ),
-    ConfigurationTest(_links_above_paper, "have a joint below the paper", "raise the base (d_mm of the first joint)"),
-    ConfigurationTest(_pen_points_down, "have the pen pointing up", "turn pen.tool_axis around"),
+    LINKS_ABOVE,
+    ConfigurationTest(_pen_points_down, "have the pen pointing away from the paper", "turn pen.tool_axis around"),
     QUICK,
     ConfigurationTest(
         _links_apart, "bring links too close to each other or to the paper", "check thickness_mm of the links"

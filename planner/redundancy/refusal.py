@@ -9,8 +9,10 @@ from planner.arms.arm import Arm, PenHold
 from planner.arrays import FloatArray
 from planner.errors import PlanError
 from planner.kinematics.chain import Kinematics
-from planner.redundancy.configuration_tests import FREE, QUICK, TESTS, ConfigurationTest, within_margins
+from planner.redundancy.configuration_tests import FREE, LINKS_ABOVE, QUICK, TESTS, ConfigurationTest, within_margins
 from planner.redundancy.paper_samples import on_paper, outside_of_base, starts_for_paper
+
+_ROUNDING_MM = 1e-6
 
 
 def _clear_of_base(arm: Arm) -> ConfigurationTest:
@@ -28,12 +30,15 @@ def no_usable_configuration(kinematics: Kinematics) -> PlanError:
     found = on_paper(kinematics, starts)
     rest = f"arm {arm.name}: no configuration puts the pen on the paper: "
     if not len(starts):
-        return PlanError(rest + "pen.tool_axis never points down within the joint limits; turn it around")
+        return PlanError(
+            rest + f"pen.tool_axis never points at it within the joint limits; {_behind(arm) or 'turn it around'}"
+        )
     if not len(found):
-        held = " with the pen pointed straight down" if arm.pen.hold is PenHold.TOOL_AXIS else ""
+        held = " with the pen pointed straight at it" if arm.pen.hold is PenHold.TOOL_AXIS else ""
         return PlanError(
             rest
-            + f"of {len(starts)} tried none gets there{held}, joint limits aside; check d_mm and a_mm of the joints"
+            + f"of {len(starts)} tried none gets there{held}, joint limits aside; check d_mm and a_mm of the joints,"
+            " and [paper]"
         )
     tests = (FREE, *TESTS, _clear_of_base(arm))
     passed = np.array([test.kept(kinematics, found) for test in tests])
@@ -48,7 +53,24 @@ def no_usable_configuration(kinematics: Kinematics) -> PlanError:
         if rejected[index]
     ]
     return PlanError(
-        rest + f"of {len(starts)} tried {len(found)} get there, and of these {', '.join(counts)}; {tests[worst].remedy}"
+        rest
+        + f"of {len(starts)} tried {len(found)} get there, and of these {', '.join(counts)}; "
+        + _remedy(arm, tests[worst])
+    )
+
+
+def _remedy(arm: Arm, test: ConfigurationTest) -> str:
+    return (test is LINKS_ABOVE and _behind(arm)) or test.remedy
+
+
+def _behind(arm: Arm) -> str:
+    """What to do where the base stands on the wrong side of the paper, or in it."""
+    off_mm = float(arm.paper.T_paper_base[2, 3])
+    if off_mm >= -_ROUNDING_MM:
+        return ""
+    return (
+        f"the base stands {-off_mm:.0f} mm behind the paper, whose z points to the side that is drawn on: move [paper],"
+        " or turn it around"
     )
 
 

@@ -36,7 +36,7 @@ def require_drawing_arm(kinematics: Kinematics) -> None:
             arm.name,
             [
                 f"pen.hold is '{arm.pen.hold}', but the joints leave pen.tool_axis up to"
-                f" {tilt:.1f} degrees from straight down: correct the coupling, the DH rows or"
-                " pen.tool_axis, or let the planner hold the pen with 'tool_axis' or 'free'"
+                f" {tilt:.1f} degrees from straight at the paper: correct the coupling, the DH rows,"
+                " pen.tool_axis or [paper], or let the planner hold the pen with 'tool_axis' or 'free'"
             ],
         )

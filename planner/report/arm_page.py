@@ -95,7 +95,7 @@ def _drawing(model: ArmModel) -> Iterator[Section]:
         "workspace",
         "Its paper",
         "The canvases within its reach; how freely the pen moves there, and how far it strays where a joint is off.",
-        lambda look: plot_workspace(arm.name, maps, canvases, paper.reach_mm, look),
+        lambda look: plot_workspace(arm.name, maps, canvases, paper.reach_mm, arm.paper, look),
     )
     none = element("ul", *(element("li", f"no {why}") for why in refused)) if refused else Markup("")
     yield Section(workspace.name, workspace.heading, joined((figure(workspace), none)))

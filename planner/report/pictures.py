@@ -121,7 +121,7 @@ def pictures(
     sides_mm, inks = paper_sides_mm(trajectory, tip_mm[:, :2]), inks_of(trajectory, tip_mm[:, 1::-1])
 
     def workspace(look: Look) -> Figure:
-        figure = plot_workspace(arm.name, maps, {settings.canvas: canvas_mm}, reach_mm, look)
+        figure = plot_workspace(arm.name, maps, {settings.canvas: canvas_mm}, reach_mm, arm.paper, look)
         axes = figure.axes[0]
         axes.add_patch(paper_patch(sides_mm, look.colours))
         width_pt = 72.0 * figure.get_size_inches()[0] * axes.get_position().width

@@ -222,7 +222,7 @@ def _regions(model: ArmModel, lift_mm: float) -> Sequence[_Region]:
         return [_Sector.of(ring, rings[0].ahead_rad, lift_mm) for ring in rings]
     patches = [_Patch.of(branch, lift_mm) for branch in model.branches()]
     base = model.arm.paper.T_paper_base
-    if abs(base[2, 2]) < _LEVEL:
+    if base[2, 2] < _LEVEL:  # a board, or a ceiling: nothing stands on it
         return patches
     before = [patch.beyond(float(base[0, 3])) for patch in patches]  # the base stands beside the paper
     return before if any(patch.good.any() for patch in before) else patches

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planner.arms.arm import Arm
+from planner.arms.paper_pose import PaperPose
 from planner.arrays import FloatArray
 from planner.checking.chain import chain_poses
 from planner.checking.links import Capsules
@@ -117,6 +118,19 @@ def test_turning_the_arm_changes_nothing(seed: int, turn: float) -> None:
     independent = random_configurations(arm, seed, 5)
     (here, _), (there, _) = (clearance.least_mm(independent + first * turn) for first in (0.0, np.eye(4)[0]))
     np.testing.assert_allclose(there, here, atol=1e-9)
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 2**32 - 1))
+def test_links_are_as_far_apart_wherever_the_paper_is(seed: int) -> None:
+    """Too far off to be what comes closest, on any side."""
+    arm = thick(load_once("six_joint"))
+    below, before = PaperPose(z_mm=-5000.0), PaperPose(x_mm=5000.0, tilt_y_rad=-np.pi / 2)
+    configurations = random_configurations(arm, seed, 50)
+    one, other = (
+        kinematics_of(replace(arm, paper=paper)).clearance.least_mm(configurations)[0] for paper in (below, before)
+    )
+    np.testing.assert_allclose(other, one, atol=1e-8)
 
 
 def test_the_worst_of_a_sequence_is_told() -> None:

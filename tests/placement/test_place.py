@@ -11,6 +11,7 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from planner.affine import rotation
+from planner.arms.paper_pose import PaperPose
 from planner.arrays import FloatArray
 from planner.drawing.drawing import Drawing, Outline
 from planner.errors import DoesNotFit, UsageError
@@ -152,7 +153,7 @@ def test_paper_lies_amid_the_canvas(paper: str, orientation: Orientation, sides:
     settings = PlanSettings(paper=paper_size(paper), orientation=orientation)
     place = placed(drawing_of((1.0, 1.0), (9.0, 5.0)), CANVAS, settings)
     assert place.told.canvas_mm == sides
-    assert place.board.where().startswith(f"lay the {'A7' if paper == 'a7' else paper} (")
+    assert place.board.where(PaperPose()).startswith(f"lay the {'A7' if paper == 'a7' else paper} (")
 
 
 def test_a_turn_that_makes_it_much_larger_is_hinted_at() -> None:

@@ -62,7 +62,7 @@ def test_the_last_node_is_the_tip_and_links_keep_their_lengths(name: str, paper:
     np.testing.assert_allclose(nodes_mm[:, 0], np.tile(base_mm, (50, 1)), atol=1e-12)
     rigid = np.ptp(np.linalg.norm(np.diff(nodes_mm, axis=1), axis=2), axis=0) < 1e-9
     assert np.count_nonzero(~rigid) == sum(joint.file_unit == "mm" for joint in arm.joints)
-    side = seen_from_the_side(nodes_mm)
+    side = seen_from_the_side(arm, nodes_mm)
     np.testing.assert_allclose(
         side[:, -1], np.column_stack((np.hypot(*(tip_mm - base_mm)[:, :2].T), tip_mm[:, 2])), atol=1e-9
     )

@@ -7,6 +7,7 @@ import pytest
 from matplotlib.collections import QuadMesh
 
 from planner.arms.arm_file import load_arm
+from planner.arms.paper_pose import PaperPose
 from planner.kinematics.sensitivity import sideways_error
 from planner.plots.workspace import plot_workspace
 from planner.settings import CanvasKind
@@ -40,7 +41,7 @@ def test_figures_are_those_of_the_configurations_the_arm_draws_with() -> None:
 
 def test_both_maps_show_figures_ring_canvas_and_base_seen_from_behind_the_base() -> None:
     figures = paper_map(model_of(SCARA))
-    figure = plot_workspace("scara", figures, CANVASES_MM, (60.0, 198.0))
+    figure = plot_workspace("scara", figures, CANVASES_MM, (60.0, 198.0), PaperPose())
     ring, *maps = [axes for axes in figure.axes if axes.get_xlabel() == "arm y (mm)"]
     assert len(maps) == 2
     for axes, values in zip(

@@ -127,7 +127,7 @@ def test_an_arm_that_cannot_have_a_map_is_told_why() -> None:
     with pytest.raises(PlanError, match="no joint moves the tip in"):
         model_of(sliding).configuration_map()
     leaning = replace(arm, couplings=(Coupling(4, -np.pi / 2, ((0, 0.5), (1, -1.0), (2, -1.0), (3, -1.0))),))
-    with pytest.raises(ArmFileError, match="degrees from straight down"):
+    with pytest.raises(ArmFileError, match="degrees from straight at the paper"):
         model_of(leaning).configuration_map()
     raised = replace(arm, joints=(replace(arm.joints[0], d_mm=300.0), *arm.joints[1:]))
     with pytest.raises(PlanError, match="none gets there, joint limits aside; check d_mm"):
@@ -143,5 +143,5 @@ def test_a_coupling_that_leaves_the_pen_tilted_is_refused(tmp_path: Path, edit: 
     assert edit[0] in text
     file = tmp_path / "tilted.toml"
     file.write_text(text.replace(*edit), encoding="utf-8")
-    with pytest.raises(ArmFileError, match="degrees from straight down"):
+    with pytest.raises(ArmFileError, match="degrees from straight at the paper"):
         model_of(load_arm(str(file))).configuration_map()

@@ -111,6 +111,4 @@ def _kept(kinematics: Kinematics, free: FloatArray) -> BoolArray:
     arm = kinematics.arm
     kept = within_limits(arm, arm.complete(free), slack=-LIMIT_MARGIN * float((arm.maximum - arm.minimum).min()))
     kept &= kinematics.clearance.least_mm(free)[0] >= KEPT_MM
-    nodes_mm = kinematics.nodes_mm(free)
-    floor_mm = np.minimum(min(float(arm.paper.T_paper_base[2, 3]), 0.0), nodes_mm[:, -1:, 2] - _ROUNDING_MM)
-    return kept & (nodes_mm[:, :-1, 2] >= floor_mm).all(axis=1)
+    return kept & (kinematics.clearance.lowest_mm(free) >= -_ROUNDING_MM)

@@ -25,6 +25,10 @@ AtPose = Callable[[Arm, FloatArray], Branches]
 """Arm and poses (n, 4, 4), mm, to all configurations."""
 
 
+_LEVEL = float(np.cos(np.radians(5.0)))
+"""Cosine of the tilt up to which a paper counts as level."""
+
+
 @dataclass(frozen=True, slots=True)
 class Family:
     """The closed form of a family; `redundancy` names what `at_tip` leaves to choose, if anything."""
@@ -52,12 +56,19 @@ def family_of(arm: Arm) -> Family:
 
 def closed_form_of(arm: Arm) -> ClosedForm:
     """The configurations that the arm's closed form draws with: one branch, chosen here, once. Errors: UsageError where
-    the arm has no closed form, PlanError where none of its configurations is within the joint limits."""
+    the arm has no closed form, or not for how its paper is turned, PlanError where none of its configurations is within
+    the joint limits."""
     at_tip, redundancy = family_of(arm).at_tip, family_of(arm).redundancy
+    if arm.paper.normal[2] < _LEVEL:
+        raise UsageError(
+            f"arm {arm.name}: closed forms are for a paper that lies level, and [paper] tilts it by"
+            f" {np.degrees(np.arccos(np.clip(arm.paper.normal[2], -1.0, 1.0))):.0f} degrees; other methods take any"
+        )
     chosen = select(arm, at_tip, redundancy is not None)
 
     def configurations(tip_mm: FloatArray) -> FloatArray:
-        radius = np.hypot(tip_mm[:, 0], tip_mm[:, 1])
-        return at_tip(arm, tip_mm, chosen.redundancy_at(radius)).configurations[:, chosen.branch]
+        in_base_mm = tip_mm if arm.paper.is_base_plane else arm.paper.to_base(tip_mm)
+        radius = np.hypot(in_base_mm[:, 0], in_base_mm[:, 1])
+        return at_tip(arm, in_base_mm, chosen.redundancy_at(radius)).configurations[:, chosen.branch]
 
     return configurations
