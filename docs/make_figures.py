@@ -49,6 +49,7 @@ FIRST_HOUR = {
 """What each is made of, of what the first hour leaves."""
 SYMPTOMS = "symptoms.png"
 PAGE = tuple(f"page-{view}.png" for view in ("sheet", "map", "arm", "joints", "phone", "jog", "calibrate"))
+ARMS = tuple(f"arm-{path.stem}.png" for path in sorted((ROOT / "configs").glob("*.toml")))
 LANTERN = ROOT / "examples" / "lantern.svg"
 FILLS = {
     "fills.png": [
@@ -69,12 +70,16 @@ def make(names: list[str]) -> None:
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         _run([str(GARDEN), "-o", "traj.csv", "--quiet"])
-        wanted = names or [*PLOTS, *COMPARISONS, *FIRST_HOUR, *FILLS, SYMPTOMS, *PAGE]
+        wanted = names or [*PLOTS, *COMPARISONS, *FIRST_HOUR, *FILLS, SYMPTOMS, *PAGE, *ARMS]
         if any(name in FIRST_HOUR for name in wanted):
             from first_hour import first_hour
 
             first_hour(GARDEN)
             _run(["plot", "pattern.csv", "--kind", "drawing", "-o", "pattern.png"])
+        if any(name in ARMS for name in wanted):
+            from arm_pictures import arm_pictures
+
+            arm_pictures(Path(folder))
         if any(name in PAGE for name in wanted):
             from page_pictures import page_pictures
 
@@ -86,7 +91,7 @@ def make(names: list[str]) -> None:
                 _run(["compare", *COMPARISONS[name], "--plot", str(IMAGES / name)])
             elif name in FIRST_HOUR:
                 _small(Path(FIRST_HOUR[name]), IMAGES / name)
-            elif name in PAGE:
+            elif name in (*PAGE, *ARMS):
                 _small(Path(name), IMAGES / name)
             elif name in FILLS:
                 _fills(FILLS[name], IMAGES / name)

@@ -82,7 +82,7 @@ def _drawing(model: ArmModel) -> Iterator[Section]:
             class_="facts",
         ),
     )
-    joints = _configurations(model, paper.corners_arm_mm)
+    joints = configurations_on_canvas(model, paper.corners_arm_mm)
     poses = picture(
         "poses",
         "How it stands",
@@ -101,7 +101,7 @@ def _drawing(model: ArmModel) -> Iterator[Section]:
     yield Section(workspace.name, workspace.heading, joined((figure(workspace), none)))
 
 
-def _configurations(model: ArmModel, corners_mm: FloatArray) -> FloatArray:
+def configurations_on_canvas(model: ArmModel, corners_mm: FloatArray) -> FloatArray:
     """(n, n_joints) on the middle line of the canvas, the middle one first."""
     near, far = corners_mm[:, 0].min(), corners_mm[:, 0].max()
     middle = corners_mm[:, 1].mean()

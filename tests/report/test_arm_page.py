@@ -12,7 +12,7 @@ from planner.arms.arm_file import load_arm
 from planner.cli import main
 from planner.plots.motion import arm_nodes
 from planner.redundancy.arm_model import ArmModel
-from planner.report.arm_page import _configurations, arm_page
+from planner.report.arm_page import arm_page, configurations_on_canvas
 from planner.workspace.reach import paper_in_reach
 from tests.arms.chains import DRAWING_ARMS
 
@@ -22,7 +22,7 @@ def test_the_poses_shown_have_the_pen_on_the_canvas(name: str) -> None:
     arm = load_arm(name)
     model = ArmModel(arm)
     corners = paper_in_reach(model).corners_arm_mm
-    tips = arm_nodes(arm, _configurations(model, corners))[:, -1]
+    tips = arm_nodes(arm, configurations_on_canvas(model, corners))[:, -1]
     np.testing.assert_allclose(tips[:, 2], 0.0, atol=1e-6)
     assert ((tips[:, :2] >= corners.min(axis=0)) & (tips[:, :2] <= corners.max(axis=0))).all()
 
