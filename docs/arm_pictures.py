@@ -1,4 +1,4 @@
-"""The included arms in the configurations that they draw in, for the gallery: `make_figures.py` takes them from here."""
+"""The included arms as they draw, for the gallery: `make_figures.py` takes the pictures from here."""
 
 from __future__ import annotations
 
