@@ -66,7 +66,14 @@ def plan(
     """Plan one drawing. The result is the same whoever does the work. arm: None for the one that the settings name.
     Errors: PlannerError, before any result exists."""
     report("reading", 0, 1)
-    context = PlanContext.of(arm or load_arm(settings.arm), settings)
+    return plan_with(PlanContext.of(arm or load_arm(settings.arm), settings), drawing_file, report, workers)
+
+
+def plan_with(
+    context: PlanContext, drawing_file: DrawingSource, report: Report = unreported, workers: Workers = ALONE
+) -> Plan:
+    """Plan one drawing of several for the same arm, with the same settings. Errors: as `plan`."""
+    settings = context.settings
     lift_mm(context.model.arm, settings)  # said before the work begins
     with executor_of(worth_hiring(workers, drawing_file), context.make_ready) as executor:
         drawing = read_drawing(drawing_file, partial(report, "reading"), options=settings.reading)
