@@ -52,6 +52,26 @@ class Driver(Protocol):
         """Lines about the link for people: frames, retransmissions, under-runs."""
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class Measurements:
+    """times_s: (n,) since the first set point. positions: (n, n_joints) rad or mm, NaN where a joint was not measured
+    then."""
+
+    times_s: FloatArray
+    positions: FloatArray
+
+
+@runtime_checkable
+class Measuring(Driver, Protocol):
+    """A driver that can tell where the joints are while it plays."""
+
+    def measure(self) -> None:
+        """Do so from now on. Before `connect`."""
+
+    def measured(self) -> Measurements:
+        """What was measured so far."""
+
+
 @dataclass(frozen=True, slots=True)
 class Tally:
     """How a controller counts what it does in a run, so that another host can read its count: the run's number, the
