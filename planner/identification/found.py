@@ -13,9 +13,10 @@ from planner.identification.measured import Measured
 from planner.identification.motion import Quantity, Step, TestMotion
 from planner.identification.response import GENTLE, Trial, answer, steps_followed
 
-MARGIN = 0.9
-"""Of what was found, what is proposed: a step that is not quite followed may not show, and servos get warm."""
-_NOISE = 0.002
+MARGIN = {Quantity.JERK: 0.85, Quantity.ACCELERATION: 0.9}
+"""Of what was found, what is proposed: a step that is not quite followed may not show, jerk less than acceleration, and
+servos get warm."""
+_NOISE = 0.0005
 """Least error that shows, as a share of a way."""
 _FEWEST_A_WAY = 4
 _AT_LIMIT = 0.95
@@ -104,7 +105,9 @@ def _proposed(arm: Arm, step: Step, steps: int, level: float, is_end: bool, by_j
     """A limit that was never reached is not lowered, and one that jerk hid is left as it is."""
     one = arm.joints[step.joint]
     before = one.max_jerk if step.quantity is Quantity.JERK else one.max_acceleration
-    proposed = before if by_jerk else max(before, MARGIN * level) if is_end else MARGIN * level
+    proposed = (
+        before if by_jerk else max(before, MARGIN[step.quantity] * level) if is_end else MARGIN[step.quantity] * level
+    )
     rounded = _three_digits(proposed / one.per_file_unit) * one.per_file_unit if proposed != before else before
     return Found(step.joint, step.quantity, step.number, steps, level, is_end, by_jerk, rounded)
 
