@@ -38,8 +38,8 @@ def check(arguments: list[str]) -> int:
         "--tolerance",
         type=length_mm(minimum_mm=MIN_TOLERANCE_MM),
         metavar="LENGTH",
-        help=f"how far the pen may be off the drawing (default: {PlanSettings().tolerance_mm:g} mm, or half the expected"
-        " error of a calibrated arm)",
+        help=f"how far the pen may be off the drawing (default: {PlanSettings().tolerance_mm:g} mm, or half the"
+        " expected error of a calibrated arm)",
     )
     parser.add_argument(
         "--json", type=output_file, metavar="FILE", help="write the check result there as well; - for standard output"

@@ -16,7 +16,7 @@ from planner.errors import UsageError
 if TYPE_CHECKING:
     from planner.arms.arm import Arm
     from planner.identification.found import Found
-    from planner.identification.motion import TestMotion
+    from planner.identification.motion import LadderMotion
 
 _DESCRIPTION = """\
 Find the limits of acceleration and jerk of an arm's joints. With --arm, plan a test motion: with the pen up, one joint
@@ -100,7 +100,7 @@ def _check(options: argparse.Namespace) -> None:
     )
 
 
-def _motion(arm: Arm, options: argparse.Namespace) -> TestMotion:
+def _motion(arm: Arm, options: argparse.Namespace) -> LadderMotion:
     """Every position is one that its servo gets to, where the arm's file tells."""
     from contextlib import suppress
 
@@ -114,7 +114,7 @@ def _motion(arm: Arm, options: argparse.Namespace) -> TestMotion:
     return make_motion(arm, options.arm or options.tested, reach, options.rate, options.factor)
 
 
-def _planned(arm: Arm, motion: TestMotion, options: argparse.Namespace) -> list[str]:
+def _planned(arm: Arm, motion: LadderMotion, options: argparse.Namespace) -> list[str]:
     from planner.counted import clock
     from planner.identification.motion import Quantity
     from planner.trajectory import write_trajectory
@@ -137,7 +137,7 @@ def _planned(arm: Arm, motion: TestMotion, options: argparse.Namespace) -> list[
     return lines
 
 
-def _read(arm: Arm, motion: TestMotion, options: argparse.Namespace) -> list[str]:
+def _read(arm: Arm, motion: LadderMotion, options: argparse.Namespace) -> list[str]:
     from planner.arms.arm_edit import edited
     from planner.arms.arm_file import arm_file_text
     from planner.files import written_aside
@@ -156,7 +156,7 @@ def _read(arm: Arm, motion: TestMotion, options: argparse.Namespace) -> list[str
     return [_told(arm, one) for one in found]
 
 
-def _measured(arm: Arm, motion: TestMotion, options: argparse.Namespace) -> list[Found]:
+def _measured(arm: Arm, motion: LadderMotion, options: argparse.Namespace) -> list[Found]:
     from hardware.compensation.servo_values import own_calibration
     from planner.error_model.calibration.files import read_record
     from planner.identification.found import found_by_positions

@@ -10,10 +10,10 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.errors import CalibrationError
 from planner.identification.measured import Measured
-from planner.identification.motion import Quantity, Step, TestMotion
+from planner.identification.motion import Quantity, Step, LadderMotion
 from planner.identification.response import GENTLE, Trial, answer, steps_followed
 
-MARGIN = {Quantity.JERK: 0.85, Quantity.ACCELERATION: 0.9}
+MARGIN = {Quantity.JERK: 0.83, Quantity.ACCELERATION: 0.9}
 """Of what was found, what is proposed: a step that is not quite followed may not show, jerk less than acceleration, and
 servos get warm."""
 _NOISE = 0.0005
@@ -38,18 +38,19 @@ class Found:
     proposed: float
 
 
-def found_by_positions(arm: Arm, motion: TestMotion, measured: Measured, source: str) -> list[Found]:
+def found_by_positions(arm: Arm, motion: LadderMotion, measured: Measured, source: str) -> list[Found]:
     """Errors: CalibrationError where too little of a joint was measured, or it follows nothing."""
     found = []
     for joint in range(arm.n_joints):
-        jerk = _found(arm, motion, measured, joint, Quantity.JERK, source, np.inf)
-        found += [jerk, _found(arm, motion, measured, joint, Quantity.ACCELERATION, source, jerk.level)]
+        jerk = found_of_ladder(arm, motion, measured, joint, Quantity.JERK, source, np.inf)
+        found += [jerk, found_of_ladder(arm, motion, measured, joint, Quantity.ACCELERATION, source, jerk.level)]
     return found
 
 
-def _found(
-    arm: Arm, motion: TestMotion, measured: Measured, joint: int, quantity: Quantity, source: str, most_jerk: float
+def found_of_ladder(
+    arm: Arm, motion: LadderMotion, measured: Measured, joint: int, quantity: Quantity, source: str, most_jerk: float
 ) -> Found:
+    """By one ladder of a joint. most_jerk: what the joint was found to follow. Errors: as `found_by_positions`."""
     ladder = motion.ladder(joint, quantity)
     rate_hz = motion.trajectory.rate_hz
     trials = [_trial(arm, motion, measured, step, source) for step in ladder]
@@ -75,7 +76,7 @@ def _found(
     return _proposed(arm, ladder[followed - 1], len(ladder), level(followed - 1, quantity.order), is_end, by_jerk)
 
 
-def found_by_verdicts(arm: Arm, motion: TestMotion, verdicts: Mapping[str, tuple[int, int]]) -> list[Found]:
+def found_by_verdicts(arm: Arm, motion: LadderMotion, verdicts: Mapping[str, tuple[int, int]]) -> list[Found]:
     """verdicts: of each joint the last steps, of jerk and of acceleration, that looked right. Errors:
     CalibrationError for a step that there is not."""
     found = []
@@ -118,7 +119,7 @@ def _three_digits(value: float) -> float:
     return float(np.floor(value / scale + 1e-9) * scale)
 
 
-def _trial(arm: Arm, motion: TestMotion, measured: Measured, step: Step, source: str) -> Trial:
+def _trial(arm: Arm, motion: LadderMotion, measured: Measured, step: Step, source: str) -> Trial:
     trajectory = motion.trajectory
     told = arm.from_file_units(trajectory.positions[step.first : step.last + 1])[:, step.joint]
     begin_s, end_s = step.first / trajectory.rate_hz, step.last / trajectory.rate_hz

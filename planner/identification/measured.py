@@ -11,7 +11,7 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.error_model.calibration.files import Record, cells_of, number_of
 from planner.errors import CalibrationError, UsageError
-from planner.identification.motion import TestMotion
+from planner.identification.motion import LadderMotion
 
 _SAME = 1e-3
 """us or counts: records have four decimals."""
@@ -33,7 +33,7 @@ class Measured:
         return self.times_s[known], self.positions[known, joint]
 
 
-def begins_at_s(record: Record, told: FloatArray, motion: TestMotion, source: str) -> float:
+def begins_at_s(record: Record, told: FloatArray, motion: LadderMotion, source: str) -> float:
     """When in a record the test motion begins, for which servos are told (n, n_joints). Errors: CalibrationError where
     it is the record of something else."""
     period_s, n_extra = 1 / motion.trajectory.rate_hz, len(record.told) - len(told)

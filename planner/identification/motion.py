@@ -1,7 +1,8 @@
 """A test motion: one joint after the other goes back and forth, each step of it a little harder than the one before.
 
 Two ladders a joint. The first climbs in jerk, at an acceleration below the arm's limit; the second in acceleration,
-with as little jerk as speed and room allow, until that goes beyond the factor too. The joint comes slowly to where its ladders begin, and goes slowly back.
+with as little jerk as speed and room allow, until that goes beyond the factor too. The joint comes slowly to where its
+ladders begin, and goes slowly back.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ class Step:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class TestMotion:
+class LadderMotion:
     """trajectory: with the pen up from end to end. steps: in their order."""
 
     trajectory: Trajectory
@@ -68,7 +69,7 @@ class TestMotion:
         return tuple(step for step in self.steps if step.joint == joint and step.quantity is quantity)
 
 
-def make_motion(arm: Arm, name: str, reach: FloatArray | None, rate_hz: float, factor: float) -> TestMotion:
+def make_motion(arm: Arm, name: str, reach: FloatArray | None, rate_hz: float, factor: float) -> LadderMotion:
     """The test motion of `arm`, which its trajectory calls `name`, up to `factor` times its limits of acceleration and
     jerk. The same for the same arguments. reach: (n_joints, 2) where its servos get to. Errors: PlanError."""
     room = room_of(arm, reach)
@@ -99,7 +100,7 @@ def make_motion(arm: Arm, name: str, reach: FloatArray | None, rate_hz: float, f
         paper=arm.paper,
         beyond_limits=_beyond(arm, positions, rate_hz),
     )
-    return TestMotion(trajectory, tuple(steps))
+    return LadderMotion(trajectory, tuple(steps))
 
 
 def _ladders(

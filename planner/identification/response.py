@@ -109,12 +109,9 @@ class _System:
         for k, motor in enumerate(u.tolist()):
             at = min(max(at, motor - self._play / 2), motor + self._play / 2)
             joint[k] = at
-        values = self._trial.measured - np.interp(self._trial.times_s, self._grid, joint - u)
-        if weights is not None:
-            values = values - np.mean(values - self.rows @ weights)
-        else:
-            values = values - np.mean(values) + np.mean(self.rows[:, 0])
-        return values
+        values: FloatArray = self._trial.measured - np.interp(self._trial.times_s, self._grid, joint - u)
+        expected = self.rows[:, 0] if weights is None else self.rows @ weights
+        return values - np.mean(values - expected)  # c
 
     def error(self, weights: FloatArray) -> float:
         """Root mean square of the folded error."""

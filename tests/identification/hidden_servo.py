@@ -1,5 +1,5 @@
-"""A servo with limits that nobody is told: a position loop of second order, whose acceleration and jerk saturate, behind
-gears with play, measured in counts and with noise."""
+"""A servo with limits that nobody is told: a position loop of second order, whose acceleration and jerk saturate,
+behind gears with play, measured in counts and with noise."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ _FINE = 10
 
 @dataclass(frozen=True, slots=True)
 class HiddenServo:
-    """acceleration, jerk: its limits, in units of the joint. lag_s: how late it is at a steady speed. play, noise, count:
-    of the joint, of what is measured, and the steps of that."""
+    """acceleration, jerk: its limits, in units of the joint. lag_s: how late it is at a steady speed. play: of the
+    joint; noise, count: of what is measured, and the steps of that."""
 
     acceleration: float
     jerk: float
