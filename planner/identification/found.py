@@ -10,7 +10,7 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.errors import CalibrationError
 from planner.identification.measured import Measured
-from planner.identification.motion import Quantity, Step, LadderMotion
+from planner.identification.motion import LadderMotion, Quantity, Step
 from planner.identification.response import GENTLE, Trial, answer, steps_followed
 
 MARGIN = {Quantity.JERK: 0.83, Quantity.ACCELERATION: 0.9}

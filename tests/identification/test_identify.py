@@ -22,7 +22,7 @@ from planner.cli import main
 from planner.errors import CalibrationError, TrajectoryFileError, UsageError
 from planner.identification.found import MARGIN, found_by_positions, found_by_verdicts, found_of_ladder, with_limits
 from planner.identification.measured import Measured, begins_at_s, read_verdicts
-from planner.identification.motion import Quantity, LadderMotion, make_motion
+from planner.identification.motion import LadderMotion, Quantity, make_motion
 from planner.trajectory import read_trajectory, write_trajectory
 from tests.identification.hidden_servo import HiddenServo
 
