@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
+from hardware.measurements import Measurements
 from planner.arrays import FloatArray
 
 
@@ -50,15 +51,6 @@ class Driver(Protocol):
 
     def statistics(self) -> list[str]:
         """Lines about the link for people: frames, retransmissions, under-runs."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Measurements:
-    """times_s: (n,) since the first set point. positions: (n, n_joints) rad or mm, NaN where a joint was not measured
-    then."""
-
-    times_s: FloatArray
-    positions: FloatArray
 
 
 @runtime_checkable

@@ -9,7 +9,7 @@ from typing import IO, cast
 import numpy as np
 
 from hardware.compensation.servo_values import Calibration
-from hardware.drivers.driver import Measurements
+from hardware.measurements import Measurements
 from hardware.motion.tip import tips_mm
 from hardware.playback.program import Program
 from planner.arms.arm import Arm

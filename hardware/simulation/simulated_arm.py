@@ -10,7 +10,7 @@ import numpy as np
 
 from hardware.clock import Clock
 from hardware.compensation.servo_values import own_calibration
-from hardware.drivers.driver import Measurements
+from hardware.measurements import Measurements
 from planner.arms.arm import SERVO_LAG_S, Arm, Joint
 from planner.arms.slack import half_slack
 from planner.arrays import FloatArray

@@ -111,7 +111,8 @@ class _System:
             joint[k] = at
         values: FloatArray = self._trial.measured - np.interp(self._trial.times_s, self._grid, joint - u)
         expected = self.rows[:, 0] if weights is None else self.rows @ weights
-        return values - np.mean(values - expected)  # c
+        values -= np.mean(values - expected)  # c
+        return values
 
     def error(self, weights: FloatArray) -> float:
         """Root mean square of the folded error."""

@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from hardware.clock import Clock
-from hardware.drivers.driver import Measurements
 from hardware.drivers.streaming.controller import Controller, MeasuringController
 from hardware.drivers.streaming.witness import Witness, fits, seconds
+from hardware.measurements import Measurements
 from hardware.motion.slow_transfer import come_from
 from hardware.port import Line, Port
 from planner.arms.arm import Arm
