@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
+from planner.arms.arm_file import load_arm
 from planner.errors import OutputError, PlannerError, UsageError
+from planner.execution.context import PlanContext
 from planner.execution.workers import ALONE, Workers, executor_of
-from planner.pipeline import plan
-from planner.progress import unreported
+from planner.pipeline import plan_with
 from planner.settings import PlanSettings
 from planner.summary import PlanSummary
 from planner.trajectory import write_trajectory
@@ -21,7 +23,6 @@ class Job:
 
     drawing: Path
     target: Path | None
-    settings: PlanSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +34,10 @@ class Outcome:
     error: PlannerError | MemoryError | None
 
 
-def jobs_of(folder: Path, out_folder: Path, settings: PlanSettings) -> list[Job]:
+def jobs_of(folder: Path, out_folder: Path) -> list[Job]:
     """A job for each SVG of a folder, by name; `out_folder` is made if it is missing. Errors: UsageError,
     OutputError."""
-    jobs = [Job(drawing, out_folder / f"{drawing.stem}.csv", settings) for drawing in _drawings_of(folder)]
+    jobs = [Job(drawing, out_folder / f"{drawing.stem}.csv") for drawing in _drawings_of(folder)]
     targets = [job.target for job in jobs]
     for job in jobs:
         if targets.count(job.target) > 1:
@@ -48,9 +49,9 @@ def jobs_of(folder: Path, out_folder: Path, settings: PlanSettings) -> list[Job]
     return jobs
 
 
-def estimates_of(drawings: Path, settings: PlanSettings) -> list[Job]:
+def estimates_of(drawings: Path) -> list[Job]:
     """A job without a file for a drawing, or for each of a folder. Errors: UsageError."""
-    return [Job(drawing, None, settings) for drawing in (_drawings_of(drawings) if drawings.is_dir() else [drawings])]
+    return [Job(drawing, None) for drawing in (_drawings_of(drawings) if drawings.is_dir() else [drawings])]
 
 
 def _drawings_of(folder: Path) -> list[Path]:
@@ -63,17 +64,18 @@ def _drawings_of(folder: Path) -> list[Path]:
     return drawings
 
 
-def plan_all(jobs: Sequence[Job], workers: Workers) -> Iterator[Outcome]:
-    """Plan and write all drawings, at most one a worker at a time; outcomes come in the order of the jobs. A
-    cluster has to see the same files under the same names."""
+def plan_all(jobs: Sequence[Job], settings: PlanSettings, workers: Workers) -> Iterator[Outcome]:
+    """Plan and write all drawings, at most one a worker at a time; outcomes come in the order of the jobs. What is
+    computed of the arm is computed once in each process. A cluster has to see the same files under the same names.
+    Errors: PlannerError where there is no such arm."""
+    context = PlanContext.of(load_arm(settings.arm), settings)
     with executor_of(workers if len(jobs) > 1 else ALONE) as executor:
-        yield from executor(_planned, jobs)
+        yield from executor(partial(_planned, context), jobs)
 
 
-def _planned(job: Job) -> Outcome:
+def _planned(context: PlanContext, job: Job) -> Outcome:
     try:
-        # Whole drawings are counted, not what is done within one.
-        result = plan(job.drawing, job.settings, unreported)
+        result = plan_with(context, job.drawing)  # whole drawings are counted, not what is done within one
         if job.target is not None:
             write_trajectory(result.trajectory, job.target)
     except (PlannerError, MemoryError) as error:

@@ -24,6 +24,8 @@ from planner.tile import Tile
 
 FORMAT_VERSION = 1
 LONGEST_LINE = 1 << 16
+MOST_BEYOND_LIMITS = 40.0
+"""More than any test motion needs: acceleration that climbs tenfold takes jerk that climbs thirtyfold."""
 _PEN = re.compile(r"(#[0-9a-f]{6}) (\S+) (.+)")
 _LOWEST_RATE_HZ, _HIGHEST_RATE_HZ = 1e-3, 1e5  # times are written in microseconds
 
@@ -153,6 +155,7 @@ class Head:
     chosen: Chosen = ALL
     path_work: PathWork = NO_WORK
     fill: FillOptions = NO_FILL
+    beyond_limits: float = 1.0
 
     def text(self) -> str:
         """The comment lines."""
@@ -220,6 +223,8 @@ class Head:
         ]
         if self.fill != NO_FILL:
             entries.append(("fill", str(self.fill)))
+        if self.beyond_limits != 1.0:
+            entries.append(("beyond_limits", _shortest(self.beyond_limits)))
         if self.left_out != NOTHING_LEFT_OUT:
             entries += [("left_out_mm", f"{self.left_out.length_mm:.6g}"), ("left_out_taps", str(self.left_out.taps))]
         entries += [
@@ -293,6 +298,7 @@ def read_head(name: str, file: IO[str]) -> tuple[Head, str, int]:
         _chosen(name, found),
         _path_work(name, found),
         _fill(name, found),
+        _beyond_limits(name, found),
     )
     return head, line, number
 
@@ -415,6 +421,18 @@ def _fill(name: str, found: Mapping[str, tuple[str, int]]) -> FillOptions:
         return fill_options(text)
     except UsageError as error:
         raise TrajectoryFileError(name, line, f"'# fill:': {error}") from None
+
+
+def _beyond_limits(name: str, found: Mapping[str, tuple[str, int]]) -> float:
+    if "beyond_limits" not in found:
+        return 1.0
+    (factor,) = _numbers(name, found, "beyond_limits", 1)
+    line = found["beyond_limits"][1]
+    if not 1.0 <= factor <= MOST_BEYOND_LIMITS:
+        raise TrajectoryFileError(
+            name, line, f"'# beyond_limits:' is {factor:g}; wanted a factor of 1 to {MOST_BEYOND_LIMITS:g}"
+        )
+    return factor
 
 
 def _path_work(name: str, found: Mapping[str, tuple[str, int]]) -> PathWork:

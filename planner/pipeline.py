@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import partial
 from itertools import chain
@@ -13,7 +13,9 @@ from planner.account import account_of
 from planner.affine import scale_of
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
+from planner.arms.usual_settings import expected_error_mm, usual_tolerance_mm
 from planner.arrays import FloatArray
+from planner.as_servos_see import cut_corners_mm, samples_a_set_point
 from planner.assembly import assembled, verify
 from planner.best_place import best_place
 from planner.drawing.drawing import Drawing
@@ -66,7 +68,14 @@ def plan(
     """Plan one drawing. The result is the same whoever does the work. arm: None for the one that the settings name.
     Errors: PlannerError, before any result exists."""
     report("reading", 0, 1)
-    context = PlanContext.of(arm or load_arm(settings.arm), settings)
+    return plan_with(PlanContext.of(arm or load_arm(settings.arm), settings), drawing_file, report, workers)
+
+
+def plan_with(
+    context: PlanContext, drawing_file: DrawingSource, report: Report = unreported, workers: Workers = ALONE
+) -> Plan:
+    """Plan one drawing of several for the same arm, with the same settings. Errors: as `plan`."""
+    settings = context.settings
     lift_mm(context.model.arm, settings)  # said before the work begins
     with executor_of(worth_hiring(workers, drawing_file), context.make_ready) as executor:
         drawing = read_drawing(drawing_file, partial(report, "reading"), options=settings.reading)
@@ -241,6 +250,7 @@ def worth_hiring(workers: Workers, drawing_file: DrawingSource) -> Workers:
 
 
 def _summary(trajectory: Trajectory, model: ArmModel, drawings: Sequence[PenDrawing], place: Placed) -> PlanSummary:
+    tolerance_mm = drawings[0].context.settings.tolerance_mm
     arm = model.arm
     free = arm.independent_of(arm.from_file_units(trajectory.positions))
     tip_mm = model.kinematics.tip_mm(free)
@@ -256,4 +266,18 @@ def _summary(trajectory: Trajectory, model: ArmModel, drawings: Sequence[PenDraw
         won=place.won,
         hints=place.notes,
         pens=tuple(pen.name for pen in trajectory.pens),
+        remarks=tuple(_remarks(trajectory, arm, tip_mm, tolerance_mm)),
     )
+
+
+def _remarks(trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, tolerance_mm: float) -> Iterator[str]:
+    """On the tolerance of a calibrated arm, and on what its servos see of the samples."""
+    if (error_mm := expected_error_mm(arm)) and tolerance_mm == usual_tolerance_mm(arm):
+        yield f"tolerance {tolerance_mm:g} mm, by what this arm is expected to be off by: {error_mm:.2g} mm"
+    every = samples_a_set_point(trajectory.rate_hz, arm.set_point_period_s)
+    cut_mm, _ = cut_corners_mm(tip_mm, trajectory.pen, every)
+    if cut_mm > tolerance_mm:
+        yield (
+            f"the servos take a set point every {1e3 * (arm.set_point_period_s or 0.0):g} ms, one of {every} samples:"
+            f" what they see cuts up to {cut_mm:.2g} mm off the path; a lower --rate or --speed cuts less"
+        )

@@ -102,8 +102,8 @@ class PlanSettings:
     Attributes:
         arm: The name of an arm, or of its ``.toml`` file.
         method: How configurations are found.
-        rate_hz: Samples a second, 50 to 10 000.
-        tolerance_mm: How far the pen may be off the drawing.
+        rate_hz: Samples a second, 50 to 10 000. A command that is not told asks the arm: see `usual_settings`.
+        tolerance_mm: How far the pen may be off the drawing; likewise.
         speed_mm_s: Cap on the pen's speed on the paper, None for the arm's own.
         lowering_speed_mm_s: Cap on its vertical speed when it comes down.
         dwell_s: Rest on the paper after lowering.

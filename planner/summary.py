@@ -12,7 +12,8 @@ from planner.counted import clock, counted
 class PlanSummary(Account):
     """The account of the planned trajectory, and what else is to be said. size_mm: of the ink, width and height.
     scale: millimetres on paper for one on the SVG's page. where: to lay the paper, in words. hints: what might be asked
-    for instead, the most useful first. pens: in their order. won: what the place of the drawing wins."""
+    for instead, the most useful first. pens: in their order. won: what the place of the drawing wins. remarks: on
+    what it was planned with."""
 
     size_mm: tuple[float, float] = (0.0, 0.0)
     scale: float = 1.0
@@ -21,6 +22,7 @@ class PlanSummary(Account):
     hints: tuple[str, ...] = ()
     pens: tuple[str, ...] = ()
     won: str = ""
+    remarks: tuple[str, ...] = ()
 
     def lines(self) -> list[str]:
         """A few lines to read."""
@@ -34,5 +36,6 @@ class PlanSummary(Account):
             f"{counted(self.n_samples, 'sample')} at {self.rate_hz:g} Hz",
             *([f"pens: {', '.join(self.pens)}"] if self.pens else []),
             *filter(None, [self.won, self.where]),
+            *self.remarks,
             *(f"hint: {hint}" for hint in self.hints[:1]),
         ]

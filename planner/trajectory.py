@@ -43,6 +43,9 @@ TRAVELLING = -1
 """Value of `stroke` while the pen is travelling, lifting or lowering."""
 PATTERN = "pattern"
 """Value of `method` where a trajectory feels for the paper: between strokes it goes below it on purpose."""
+TEST_MOTION = "identify"
+"""Value of `method` where a trajectory tries what joints can do: it goes beyond their limits of acceleration and jerk
+on purpose, up to the factor that its header tells."""
 
 _DECIMALS = 9
 _FEWEST_DECIMALS, _MOST_DECIMALS = 6, 17
@@ -72,6 +75,7 @@ class Trajectory:
         chosen: What of the drawing was drawn.
         path_work: What was done to its lines beforehand.
         fill: How its areas were filled.
+        beyond_limits: Of a test motion alone, how many times the limits of acceleration and jerk it goes to; else 1.
         paper: Where the paper lies that arm millimetres are counted on, in the frame of the base.
         reading: How the drawing was read.
     """
@@ -96,6 +100,7 @@ class Trajectory:
     chosen: Chosen = ALL
     path_work: PathWork = NO_WORK
     fill: FillOptions = NO_FILL
+    beyond_limits: float = 1.0
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Trajectory:
@@ -206,6 +211,7 @@ class Trajectory:
             self.chosen,
             self.path_work,
             self.fill,
+            self.beyond_limits,
         )
 
     @property
@@ -280,6 +286,10 @@ def read_trajectory(source: Path) -> Trajectory:
             first_line + len(table) - 1,
             f"the last sample is at {table[-1, 0]:g} s, the header promises {head.duration_s:g} s",
         )
+    if head.beyond_limits != 1.0 and (head.method != TEST_MOTION or (table[:, -2] != 0).any()):
+        raise TrajectoryFileError(
+            name, None, "goes beyond the limits ('# beyond_limits:'), which a test motion of plan identify alone may"
+        )
     if not head.arm:
         raise TrajectoryFileError(name, None, "names no arm (no '# arm:' line)")
     return Trajectory(
@@ -303,6 +313,7 @@ def read_trajectory(source: Path) -> Trajectory:
         chosen=head.chosen,
         path_work=head.path_work,
         fill=head.fill,
+        beyond_limits=head.beyond_limits,
     )
 
 

@@ -22,6 +22,7 @@ ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = (
     *("", "batch", "lines", "run", "pattern", "calibrate", "predict", "jog", "measure"),
     *("ports", "check", "plot", "compare", "fonts", "arm", "paper", "estimate", "config", "serve", "export", "step"),
+    "identify",
 )
 NOT_RUN = {
     "|": "a pipe of the shell",
@@ -32,6 +33,7 @@ NOT_RUN = {
     "pattern": "it takes long, and pages of the documentation run it",
     "serve": "it ends when somebody ends it",
     "measure": "it takes a photo, and pages of the documentation run it",
+    "identify": "it takes what was recorded, and its own tests run it",
     "calibrate": "it takes records, and pages of the documentation run it",
     "--random": "it takes long",
     "--json flower.json": "it takes long",

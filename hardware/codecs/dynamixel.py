@@ -16,7 +16,7 @@ _PING, _READ, _STATUS, _SYNC_WRITE = 0x01, 0x02, 0x55, 0x83
 _STUFFED, _STUFFING = b"\xff\xff\xfd", b"\xff\xff\xfd\xfd"
 STATUS_SIZE = 11
 """Bytes of an answer, without what was asked for."""
-_LONGEST = 64
+_LONGEST = 128
 """An answer that says that it is longer is noise."""
 _FAULTS = {
     1: "could not carry out a command",

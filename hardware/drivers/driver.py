@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
+from hardware.measurements import Measurements
 from planner.arrays import FloatArray
 
 
@@ -50,6 +51,17 @@ class Driver(Protocol):
 
     def statistics(self) -> list[str]:
         """Lines about the link for people: frames, retransmissions, under-runs."""
+
+
+@runtime_checkable
+class Measuring(Driver, Protocol):
+    """A driver that can tell where the joints are while it plays."""
+
+    def measure(self) -> None:
+        """Do so from now on. Before `connect`."""
+
+    def measured(self) -> Measurements:
+        """What was measured so far."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,15 @@
-"""The commanded values of each servo as a table: the record that a calibration rests on."""
+"""Runs as tables: what each servo was told, on which a calibration rests, and where the joints were measured to be."""
 
 from __future__ import annotations
 
+from math import isnan
 from pathlib import Path
 from typing import IO, cast
 
 import numpy as np
 
 from hardware.compensation.servo_values import Calibration
+from hardware.measurements import Measurements
 from hardware.motion.tip import tips_mm
 from hardware.playback.program import Program
 from planner.arms.arm import Arm
@@ -29,3 +31,14 @@ def write_record(arm: Arm, trajectory: Trajectory, program: Program, calibration
         text.write(",".join(("t_s", "stroke", "x_mm", "y_mm", *names)) + "\n")
         for cells in table:
             text.write(row % tuple(cells.tolist()))
+
+
+def write_positions(arm: Arm, measured: Measurements, target: Path) -> None:
+    """One row a measurement: its time since the first set point, and each joint's position in deg or mm, empty where
+    it was not measured then. Errors: OutputError."""
+    table = arm.to_file_units(measured.positions)
+    with written_aside(target) as file:
+        text = cast("IO[str]", file)
+        text.write(",".join(("t_s", *arm.column_names)) + "\n")
+        for time_s, row in zip(measured.times_s.tolist(), table.tolist(), strict=True):
+            text.write(",".join((f"{time_s:.6f}", *("" if isnan(cell) else f"{cell:.4f}" for cell in row))) + "\n")

@@ -29,7 +29,7 @@ def check(
     drawing: DrawingInput | None = None,
     *,
     arm: Arm | str | os.PathLike[str] | None = None,
-    tolerance_mm: float = PlanSettings().tolerance_mm,
+    tolerance_mm: float | None = None,
 ) -> CheckResult:
     """Hold a trajectory against everything that one promises, with mathematics that the planner has no part in.
 
@@ -37,7 +37,7 @@ def check(
         trajectory: A trajectory, or the path of its file.
         drawing: What was to be drawn, as of :func:`planner.plan`; without it the pen's path is not compared.
         arm: Judge it for this arm; the one that the trajectory names if it is not given.
-        tolerance_mm: How far the pen may be off the drawing.
+        tolerance_mm: How far the pen may be off the drawing; what `plan` plans the arm with if it is not given.
 
     Returns:
         The findings, one a law; ``passed`` sums them up, and ``print(result)`` shows them.
@@ -46,17 +46,21 @@ def check(
         TrajectoryFileError, DrawingError, UnknownArm, ArmFileError: A file cannot be used.
         UsageError: An argument means nothing.
     """
+    from planner.arms.usual_settings import usual_tolerance_mm
     from planner.checking.check import check_trajectory
     from planner.drawing.svg import read_drawing
     from planner.trajectory import Trajectory
 
-    tolerance = number_in("tolerance_mm", tolerance_mm, minimum=MIN_TOLERANCE_MM)
+    if tolerance_mm is not None:
+        tolerance_mm = number_in("tolerance_mm", tolerance_mm, minimum=MIN_TOLERANCE_MM)
     if isinstance(trajectory, str | os.PathLike):
         trajectory = Trajectory.load(trajectory)
     elif not isinstance(trajectory, Trajectory):
         raise UsageError(f"check takes a trajectory or its file, not a value of type {type(trajectory).__name__}")
     wanted = None if drawing is None else read_drawing(drawing_source(drawing), options=trajectory.reading)
-    return check_trajectory(trajectory, arm_of(trajectory.arm if arm is None else arm), wanted, tolerance)
+    judged = arm_of(trajectory.arm if arm is None else arm)
+    tolerance = usual_tolerance_mm(judged) if tolerance_mm is None else tolerance_mm
+    return check_trajectory(trajectory, judged, wanted, tolerance)
 
 
 def compare(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from typing import TYPE_CHECKING, Unpack
 
 from planner.api.inputs import DrawingInput, Progress, arm_name, arm_of, drawing_source, shown
@@ -39,7 +40,8 @@ def plan(
             What it raises ends the plan.
         workers: Processes that share the work. A script that asks for more than one needs the usual
             ``if __name__ == "__main__":``.
-        options: The fields of :class:`planner.PlanSettings`, such as ``speed_mm_s=40`` or ``method="nlp"``.
+        options: The fields of :class:`planner.PlanSettings`, such as ``speed_mm_s=40`` or ``method="nlp"``. Where
+            neither they nor `settings` say it, ``rate_hz`` and ``tolerance_mm`` are the usual ones of the arm.
 
     Raises:
         DrawingError: The drawing cannot be read, or holds nothing that a pen can draw.
@@ -47,6 +49,7 @@ def plan(
         UsageError: An option means nothing. UnknownOption, which is a TypeError too: there is no such option.
         PlanError: This arm cannot draw it so: TargetOutOfReach, DoesNotFit, LinksCollide.
     """
+    from planner.arms.usual_settings import usual_rate_hz, usual_tolerance_mm
     from planner.execution.workers import Workers
     from planner.pipeline import plan as plan_drawing
 
@@ -54,6 +57,13 @@ def plan(
     helpers = Workers(int(number_in("workers", workers, minimum=1, maximum=_MOST_WORKERS)))
     source = drawing_source(drawing)
     loaded = arm_of(wanted.arm if arm is None else arm)
+    if settings is None:
+        rate_hz, tolerance_mm = usual_rate_hz(loaded), usual_tolerance_mm(loaded)
+        wanted = replace(
+            wanted,
+            rate_hz=wanted.rate_hz if "rate_hz" in options else rate_hz,
+            tolerance_mm=wanted.tolerance_mm if "tolerance_mm" in options else tolerance_mm,
+        )
     with shown(progress, stages_of_a_plan=True) as show:
         planned = plan_drawing(source, wanted, show, helpers, loaded)
     return Plan(planned.trajectory, planned.summary, planned.drawing, loaded, wanted)

@@ -169,8 +169,9 @@ class Arm:
     equal where all of this is.
 
     park: (n_joints,) where the arm rests when it is not used, if the builder says. paper: where the paper lies.
-    accuracy: what a calibration left unknown, where there was one. weights: what spare joints are spent on, where
-    nothing else is asked for. tool: from the end of the last row to the pen's frame, whose origin is the tip.
+    set_point_period_s: how often its servos take a new set point, where that is known. accuracy: what a calibration
+    left unknown, where there was one. weights: what spare joints are spent on, where nothing else is asked for. tool:
+    from the end of the last row to the pen's frame, whose origin is the tip.
     """
 
     name: str
@@ -185,6 +186,7 @@ class Arm:
     accuracy: Accuracy | None = None
     weights: ConfigurationWeights = DEFAULT_WEIGHTS
     tool: RigidTransform = IDENTITY
+    set_point_period_s: float | None = None
 
     @property
     def n_joints(self) -> int:

@@ -144,6 +144,10 @@ class _PaperSection(Section):
         )
 
 
+class _ServosSection(Section):
+    set_point_period_ms: Annotated[float, Field(ge=0.1, le=100, allow_inf_nan=False)]
+
+
 class _AccuracySection(Section):
     marks: Annotated[int, Field(ge=0)]
     tip_mm: NotNegative
@@ -185,6 +189,7 @@ class _ArmSection(Section):
     park: dict[str, Number] | None = None
     paper: _PaperSection = _PaperSection()
     tool: ToolSection = ToolSection()
+    servos: _ServosSection | None = None
     accuracy: _AccuracySection | None = None
     configurations: _ConfigurationsSection = _ConfigurationsSection()
 
@@ -450,6 +455,7 @@ def _arm(section: _ArmSection) -> Arm:
         paper=section.paper.pose(),
         tool=_tool(section),
         weights=section.configurations.weights(),
+        set_point_period_s=None if section.servos is None else section.servos.set_point_period_ms / 1e3,
         accuracy=None if section.accuracy is None else _accuracy(section.accuracy, joints),
     )
 

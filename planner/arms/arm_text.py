@@ -47,6 +47,8 @@ def arm_toml(arm: Arm, remarks: Iterable[str] = ()) -> str:
         blocks.append("[paper]\n" + _lines(_paper(arm.paper)))
     if not arm.tool.is_identity:
         blocks.append("[tool]\n" + _exact_lines(frame_values(arm.tool)))
+    if arm.set_point_period_s is not None:
+        blocks.append("[servos]\n" + _lines({"set_point_period_ms": 1e3 * arm.set_point_period_s}))
     if arm.accuracy is not None:
         slack = {
             f"{joint.name}": value / joint.per_file_unit

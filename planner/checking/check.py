@@ -14,6 +14,7 @@ from planner.checking.pen import (
     links_apart,
     on_the_paper,
     pen_as_the_tip,
+    servo_notes,
     straight_up_and_down,
     stroke_order,
     upright,
@@ -54,6 +55,7 @@ def check_trajectory(
         *links_apart(trajectory, sweeps, tolerance_mm),
         *([] if feels else straight_up_and_down(trajectory, sweeps, arm.pen.clearance_mm, tolerance_mm)),
         *lift_notes(trajectory, arm, sweeps[0], tolerance_mm),
+        *servo_notes(trajectory, arm, sweeps[0], tolerance_mm),
     ]
     findings += within_the_canvas(trajectory, sweeps[0], tolerance_mm)
     findings += (

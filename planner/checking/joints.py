@@ -20,7 +20,7 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray, IntArray
 from planner.checking.between import POINTS_PER_STEP, Interpolation, cubic_error, positions_between
 from planner.checking.check_result import Finding, Place
-from planner.trajectory import Trajectory
+from planner.trajectory import TEST_MOTION, Trajectory
 
 COUPLING_TOLERANCE = 1e-4
 """In deg or mm of the joint that is driven."""
@@ -45,7 +45,7 @@ def columns(trajectory: Trajectory, arm: Arm) -> Finding:
 def rest_at_the_ends(trajectory: Trajectory, arm: Arm) -> list[Finding]:
     """At rest means velocity and acceleration zero; jerk alone then moves a joint J t^3 / 6 in the time t."""
     findings = []
-    max_jerk = arm.to_file_units(arm.max_jerk)
+    max_jerk = arm.to_file_units(trajectory.beyond_limits * arm.max_jerk)
     for check, end in (("starts at rest", slice(None)), ("ends at rest", slice(None, None, -1))):
         positions, rounding = trajectory.positions[end], trajectory.rounding[end]
         worst: tuple[float, int, int, float, float] | None = None
@@ -92,7 +92,9 @@ def position_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
     allowed as well): for each joint the position that is furthest towards a limit or beyond it."""
     low, high = arm.to_file_units(arm.minimum), arm.to_file_units(arm.maximum)
     rounding = trajectory.rounding.max(axis=0)
-    interpolation_error = arm.to_file_units(cubic_error(arm.max_jerk, 1 / trajectory.rate_hz))
+    interpolation_error = arm.to_file_units(
+        cubic_error(trajectory.beyond_limits * arm.max_jerk, 1 / trajectory.rate_hz)
+    )
     blocks = positions_between(trajectory.positions, Interpolation.CUBIC)
     findings = []
     for check, (positions, samples), allowance in (
@@ -143,13 +145,16 @@ def _beyond(positions: FloatArray, low: FloatArray, high: FloatArray) -> FloatAr
 
 
 def rate_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
-    """Velocity, acceleration and jerk by finite differences, a finding for each joint and each of them."""
+    """Velocity, acceleration and jerk by finite differences, a finding for each joint and each of them. A test motion
+    may go as far beyond the last two as its header tells."""
     findings = []
     rounding = trajectory.rounding
+    beyond = trajectory.beyond_limits
+    on_purpose = f"which may be {beyond:g} times the arm's limit in this test motion" if beyond != 1.0 else ""
     for order, check, maximum in (
         (1, "velocity", arm.max_velocity),
-        (2, "acceleration", arm.max_acceleration),
-        (3, "jerk", arm.max_jerk),
+        (2, "acceleration", beyond * arm.max_acceleration),
+        (3, "jerk", beyond * arm.max_jerk),
     ):
         if trajectory.n_samples <= order:
             continue
@@ -166,7 +171,15 @@ def rate_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
                     worst.figure,
                     worst.limit,
                     worst.sample,
-                    remark=f"over {order * worst.stride} steps" if worst.stride > 1 else "",
+                    remark=", ".join(
+                        filter(
+                            None,
+                            (
+                                f"over {order * worst.stride} steps" if worst.stride > 1 else "",
+                                on_purpose if order > 1 else "",
+                            ),
+                        )
+                    ),
                     per="/s" + ("" if order == 1 else "²" if order == 2 else "³"),
                 )
             )
@@ -207,8 +220,11 @@ def _worst_difference(
 
 
 def couplings(trajectory: Trajectory, arm: Arm) -> list[Finding]:
-    """How far each mimic joint is from what its coupling says. A finding a coupling."""
-    findings = []
+    """How far each mimic joint is from what its coupling says. A finding a coupling; none of a test motion, which moves
+    every joint by itself."""
+    findings: list[Finding] = []
+    if trajectory.method == TEST_MOTION:
+        return findings
     positions = arm.from_file_units(trajectory.positions)
     for coupling in arm.couplings:
         wanted = coupling.constant + sum(

@@ -242,6 +242,43 @@ def lift_notes(trajectory: Trajectory, arm: Arm, sweep: Sweep, tolerance_mm: flo
     return notes
 
 
+def servo_notes(trajectory: Trajectory, arm: Arm, sweep: Sweep, tolerance_mm: float) -> list[Finding]:
+    """How far the pen is beside the path where servos take one of several samples alone, whichever they begin with, and
+    go straight to it. Worth knowing, and no fault: the promise is one of the samples."""
+    if arm.set_point_period_s is None:
+        return []
+    every = max(int(np.ceil(arm.set_point_period_s * trajectory.rate_hz - 1e-6)), 1)
+    if every == 1:
+        return []
+    tip_mm = sweep.tip_mm[:: sweep.points_per_step]
+    worst_mm, where = 0.0, 0
+    for first in range(every):
+        taken = tip_mm[first::every]
+        for k in range(1, every):
+            passed = tip_mm[first + k :: every][: len(taken) - 1]
+            at = first + k + every * np.arange(len(passed))
+            down = trajectory.pen[at - k] & trajectory.pen[np.minimum(at - k + every, trajectory.n_samples - 1)]
+            away = np.where(down, _to_segments(passed, taken[: len(passed)], taken[1 : len(passed) + 1]), 0.0)
+            if len(away) and away.max() > worst_mm:
+                worst_mm, where = float(away.max()), int(at[np.argmax(away)])
+    beyond = "; more than the tolerance: a lower rate or speed cuts less" if worst_mm > tolerance_mm else ""
+    remark = f"one of {every} samples, every {1e3 * arm.set_point_period_s:g} ms, with straight lines between{beyond}"
+    return [
+        Finding(
+            "pen path as servos see it", True, worst_mm, unit="mm", place=place_of(trajectory, where), remark=remark
+        )
+    ]
+
+
+def _to_segments(points: FloatArray, begins: FloatArray, ends: FloatArray) -> FloatArray:
+    """(n,) distance of each point (n, 3) to its segment."""
+    along = ends - begins
+    square = (along**2).sum(axis=1)
+    share = np.clip(((points - begins) * along).sum(axis=1) / np.where(square > 0, square, 1.0), 0.0, 1.0)
+    away: FloatArray = np.linalg.norm(points - begins - share[:, None] * along, axis=1)
+    return away
+
+
 def place_of(trajectory: Trajectory, sample: int, point: int | None = None, sweep: Sweep | None = None) -> Place:
     """The place of a sample, or of a point of a sweep."""
     time_s = sample / trajectory.rate_hz

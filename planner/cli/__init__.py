@@ -113,6 +113,10 @@ def _command(arguments: list[str]) -> int:
             from planner.cli.calibrate import calibrate
 
             return calibrate(rest)
+        case "identify":
+            from planner.cli.identify import identify
+
+            return identify(rest)
         case "predict":
             from planner.cli.predict import predict
 

@@ -16,6 +16,7 @@ from planner.counted import clock, counted, metres
 
 if TYPE_CHECKING:
     from planner.batch import Job, Outcome
+    from planner.settings import PlanSettings
 
 _DESCRIPTION = """\
 Plan every drawing (.svg) of a folder, each into a trajectory of its own name. Drawings are shared out among the
@@ -49,17 +50,17 @@ def batch(arguments: list[str]) -> int:
 
     from planner.batch import jobs_of
 
-    return _done(jobs_of(folder, options.output or folder, settings), options)
+    return _done(jobs_of(folder, options.output or folder), settings, options)
 
 
-def _done(jobs: Sequence[Job], options: argparse.Namespace) -> int:
+def _done(jobs: Sequence[Job], settings: PlanSettings, options: argparse.Namespace) -> int:
     """Do all jobs and tell what became of them; the exit code."""
     from planner.batch import plan_all
 
     outcomes: list[Outcome] = []
     with progress(quiet=options.quiet) as show, interrupts_remembered() as raise_if_interrupted:
         show("drawings", 0, len(jobs))
-        for outcome in plan_all(jobs, options.workers):
+        for outcome in plan_all(jobs, settings, options.workers):
             raise_if_interrupted()
             outcomes.append(outcome)
             show("drawings", len(outcomes), len(jobs))
@@ -84,7 +85,7 @@ def estimate(arguments: list[str]) -> int:
 
     from planner.batch import estimates_of
 
-    return _done(estimates_of(options.folder, settings), options)
+    return _done(estimates_of(options.folder), settings, options)
 
 
 def _exit_code(outcome: Outcome) -> int:

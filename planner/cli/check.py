@@ -38,8 +38,8 @@ def check(arguments: list[str]) -> int:
         "--tolerance",
         type=length_mm(minimum_mm=MIN_TOLERANCE_MM),
         metavar="LENGTH",
-        default=PlanSettings().tolerance_mm,
-        help="how far the pen may be off the drawing (default: %(default)g mm)",
+        help=f"how far the pen may be off the drawing (default: {PlanSettings().tolerance_mm:g} mm, or half the"
+        " expected error of a calibrated arm)",
     )
     parser.add_argument(
         "--json", type=output_file, metavar="FILE", help="write the check result there as well; - for standard output"
@@ -57,6 +57,7 @@ def check(arguments: list[str]) -> int:
         check_target(options.json, *sources)
 
     from planner.arms.arm_file import load_arm
+    from planner.arms.usual_settings import usual_tolerance_mm
     from planner.checking.check import check_trajectory
     from planner.drawing.svg import read_drawing
     from planner.files import written_aside
@@ -67,7 +68,8 @@ def check(arguments: list[str]) -> int:
         arm = load_arm(options.arm or trajectory.arm)
         drawing = read_drawing(options.drawing, options=trajectory.reading) if options.drawing else None
     with waiting("checking", quiet=options.quiet):
-        check_result = check_trajectory(trajectory, arm, drawing, options.tolerance)
+        tolerance_mm = usual_tolerance_mm(arm) if options.tolerance is None else options.tolerance
+        check_result = check_trajectory(trajectory, arm, drawing, tolerance_mm)
     if options.json:
         with written_aside(options.json) as file:
             cast("IO[str]", file).write(json.dumps(check_result.as_dict(), indent=2) + "\n")

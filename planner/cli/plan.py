@@ -40,6 +40,7 @@ other commands (each has its own --help; a drawing of that name is planned as ./
   plan run traj.csv         play a trajectory on the simulated arm
   plan pattern --arm ARM    a trajectory of marks to calibrate an arm with
   plan calibrate ARM        an arm file from marks that the arm made
+  plan identify --arm ARM   a test motion that finds the limits of its joints
   plan predict traj.csv     how well an arm is going to draw
   plan jog --arm ARM        one joint at a time, on the first day of an arm
   plan serve                a page to place, plan, watch and run drawings on

@@ -67,16 +67,15 @@ def add_arm_and_placement_options(parser: Parser) -> None:
     motion.add_argument(
         "--rate",
         type=number(minimum=MIN_RATE_HZ, maximum=MAX_RATE_HZ),
-        default=default.rate_hz,
         metavar="HZ",
-        help="samples a second (default: %(default)g)",
+        help=f"samples a second (default: {default.rate_hz:g}, or more where the arm's servos take set points faster)",
     )
     motion.add_argument(
         "--tolerance",
         type=length_mm(minimum_mm=MIN_TOLERANCE_MM),
-        default=default.tolerance_mm,
         metavar="LENGTH",
-        help="how far the pen may be off the drawing (default: %(default)g mm)",
+        help=f"how far the pen may be off the drawing (default: {default.tolerance_mm:g} mm, or half the expected error"
+        " of a calibrated arm)",
     )
     motion.add_argument(
         "--speed",
@@ -115,12 +114,20 @@ def add_arm_and_placement_options(parser: Parser) -> None:
 
 
 def settings_of(options: argparse.Namespace) -> PlanSettings:
-    """The settings that options from `add_plan_options` amount to."""
+    """The settings that options from `add_plan_options` amount to. Errors: UnknownArm, ArmFileError."""
+    rate_hz, tolerance_mm = options.rate, options.tolerance
+    if rate_hz is None or tolerance_mm is None:
+        from planner.arms.arm_file import load_arm
+        from planner.arms.usual_settings import usual_rate_hz, usual_tolerance_mm
+
+        arm = load_arm(options.arm)
+        rate_hz = usual_rate_hz(arm) if rate_hz is None else rate_hz
+        tolerance_mm = usual_tolerance_mm(arm) if tolerance_mm is None else tolerance_mm
     return PlanSettings(
         arm=options.arm,
         method=Method(options.method),
-        rate_hz=options.rate,
-        tolerance_mm=options.tolerance,
+        rate_hz=rate_hz,
+        tolerance_mm=tolerance_mm,
         speed_mm_s=options.speed,
         lowering_speed_mm_s=options.lowering_speed,
         dwell_s=options.dwell,

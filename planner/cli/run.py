@@ -17,7 +17,7 @@ def run(arguments: list[str]) -> int:
     refuse_contradictions(options)
 
     from hardware.drivers.table import SIMULATORS
-    from hardware.playback.recording import write_record
+    from hardware.playback.recording import write_positions, write_record
     from planner.cli.controls import breaking_off
     from planner.cli.run_claims import one_at_a_time
     from planner.cli.run_events import tell_ended
@@ -25,12 +25,14 @@ def run(arguments: list[str]) -> int:
     from planner.cli.run_job import dry_run_lines, examine
     from planner.cli.run_pens import PenChanges
     from planner.cli.run_pictures import check_pictures, save_pictures
-    from planner.cli.run_playing import play_out, set_up, true_arm_of
+    from planner.cli.run_playing import measuring_driver, play_out, set_up, true_arm_of
     from planner.cli.run_resume import where_to_begin
 
     check_pictures(options.picture, options.trajectory)
     if options.record:
         check_target(options.record, options.trajectory)
+    if options.record_positions:
+        check_target(options.record_positions, options.trajectory)
     if options.film:
         check_target(options.film, options.trajectory)
     if options.resume:
@@ -63,7 +65,11 @@ def run(arguments: list[str]) -> int:
             print_lines(dry_run_lines(options, job, program, commanded))
             return 0
         changes = PenChanges(job.trajectory, beginning.next_stroke, rig.clock, rig.insert)
+        if options.record_positions:
+            measuring_driver(rig).measure()
         result = play_out(options, job.clear_arm, program, rig, beginning, job.trajectory, changes)
+    if options.record_positions:
+        write_positions(job.arm, measuring_driver(rig).measured(), options.record_positions)
     lines = result.lines()
     if rig.recording is not None and options.picture:
         moved = rig.recording()

@@ -17,7 +17,7 @@ from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.counted import clock
 from planner.errors import HardwareError, UsageError
-from planner.trajectory import PATTERN, Trajectory, read_trajectory
+from planner.trajectory import PATTERN, TEST_MOTION, Trajectory, read_trajectory
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -61,8 +61,9 @@ class Job:
         return parking(self.clear_arm, self.positions, self.rate_hz, self.arm.park)
 
     def compensated(self, program: Program) -> Program:
-        """The program with the slack of the servos taken up; as it is for a pattern, in which slack has to show."""
-        if self.calibration is None or self.trajectory.method == PATTERN:
+        """The program with the slack of the servos taken up; as it is for a pattern or a test motion, in which
+        slack has to show."""
+        if self.calibration is None or self.trajectory.method in (PATTERN, TEST_MOTION):
             return program
         return compensated(self.arm, program, self.calibration)
 
@@ -85,6 +86,11 @@ def examine(options: argparse.Namespace) -> Job:
     Errors: PlannerError.
     """
     trajectory = read_trajectory(options.trajectory)
+    if trajectory.beyond_limits != 1.0 and not options.beyond_limits:
+        raise UsageError(
+            f"{options.trajectory} is a test motion that goes to {trajectory.beyond_limits:g} times the arm's limits of"
+            " acceleration and jerk on purpose: play it with --beyond-limits, and with a hand at the switch"
+        )
     arm = load_arm(options.arm or trajectory.arm)
     positions = set_points(trajectory, arm, options.trajectory)
     calibration = calibration_of(options.driver, arm)

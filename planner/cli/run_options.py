@@ -108,6 +108,17 @@ def parser() -> Parser:
         metavar="FILE",
         help="also write what each servo is told, a .csv of one row a set point, which plan calibrate needs",
     )
+    options.add_argument(
+        "--record-positions",
+        type=output_file,
+        metavar="FILE",
+        help="sim, feetech, dynamixel: also write where the joints are measured to be, which plan identify reads",
+    )
+    options.add_argument(
+        "--beyond-limits",
+        action="store_true",
+        help="play a test motion of plan identify, which goes beyond the limits of acceleration and jerk on purpose",
+    )
     options.add_argument("--quiet", action="store_true", help="no progress and no summary")
     add_events_option(options, "; keys are read from standard input, whose end stops the arm")
     return options
@@ -127,7 +138,7 @@ def _baud(text: str) -> int:
 
 def refuse_contradictions(options: argparse.Namespace) -> None:
     """Errors: UsageError."""
-    from hardware.drivers.table import DRIVERS, MUJOCO, SIMULATED, SIMULATORS
+    from hardware.drivers.table import DRIVERS, MEASURE_POSITIONS, MUJOCO, SIMULATED, SIMULATORS
 
     if options.driver not in DRIVERS:
         raise UsageError(f"there is no driver '{options.driver}'; there are {', '.join(DRIVERS)}")
@@ -141,6 +152,7 @@ def refuse_contradictions(options: argparse.Namespace) -> None:
         ("picture", options.picture, SIMULATORS),
         ("servos", options.servos != "ideal", (SIMULATED,)),
         ("film", options.film, (MUJOCO,)),
+        ("record-positions", options.record_positions, (SIMULATED, *MEASURE_POSITIONS)),
     ):
         if given and options.driver not in drivers:
             raise UsageError(f"--{name} goes with --driver {' or '.join(drivers)}, not with {options.driver}")
@@ -153,6 +165,8 @@ def refuse_contradictions(options: argparse.Namespace) -> None:
         raise UsageError("--true-arm says what the arm really is; leave out --seed")
     if options.frame and (options.resume or options.from_stroke is not None or options.record or options.picture):
         raise UsageError("--frame draws nothing; leave out --resume, --from-stroke, --record and --picture")
-    refuse_events_among_results(options, options.record, options.film, *options.picture)
+    if options.record_positions and (options.frame or options.dry_run):
+        raise UsageError("--record-positions needs a run; leave out --frame and --dry-run")
+    refuse_events_among_results(options, options.record, options.record_positions, options.film, *options.picture)
     if options.resume and options.from_stroke is not None:
         raise UsageError("--resume finds the stroke itself; leave out --from-stroke")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from hardware.clock import Clock, InstantClock, WallClock
 from hardware.compensation.servo_values import own_calibration
-from hardware.drivers.driver import Driver
+from hardware.drivers.driver import Driver, Measuring
 from hardware.drivers.table import MEASURE_POSITIONS, MUJOCO, SIMULATED, make_driver
 from hardware.motion.slow_transfer import in_words
 from hardware.playback.journal_entry import Entry
@@ -79,6 +79,13 @@ def set_up(options: argparse.Namespace, arm: Arm, true_arm: Arm) -> Rig:
     if isinstance(simulated, SimulatedArm):
         return Rig(simulated, clock, lambda: simulated.recording)
     return Rig(simulated, clock, lambda: simulated.recording, simulated.insert)
+
+
+def measuring_driver(rig: Rig) -> Measuring:
+    """The driver as one that tells where joints are. Errors: UsageError where it does not."""
+    if not isinstance(rig.driver, Measuring):
+        raise UsageError("--record-positions goes with drivers that tell where joints are")
+    return rig.driver
 
 
 def play_out(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from collections.abc import Callable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from hardware.clock import Clock
 from hardware.compensation.servo_values import Calibration
@@ -61,3 +62,11 @@ class Controller(Protocol):
 
         Errors: HardwareError where the answer is a fault, or tells of a reset.
         """
+
+
+@runtime_checkable
+class MeasuringController(Controller, Protocol):
+    """One whose servos measure where they are, and tell it with their answers."""
+
+    def measure(self, measured: Callable[[int, float], None]) -> None:
+        """From now on, call measured(witness, value) with each answer; witness k moves joint k."""

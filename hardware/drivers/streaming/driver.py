@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from hardware.clock import Clock
-from hardware.drivers.streaming.controller import Controller
+from hardware.drivers.streaming.controller import Controller, MeasuringController
 from hardware.drivers.streaming.witness import Witness, fits, seconds
+from hardware.measurements import Measurements
 from hardware.motion.slow_transfer import come_from
 from hardware.port import Line, Port
 from planner.arms.arm import Arm
@@ -31,6 +34,25 @@ class StreamingDriver:
         self._witness = Witness(controller)
         self._reached_s = self._free_s = -math.inf
         self._sent = self._bytes = 0
+        self._told: FloatArray | None = None
+        self._played_s = self._asked_s = 0.0
+        self._measured: list[tuple[float, int, float]] | None = None
+
+    def measure(self) -> None:
+        """Errors: HardwareError where servos do not measure where they are."""
+        if not isinstance(self._controller, MeasuringController):
+            raise HardwareError(f"{self._line.name}: these servos do not tell where they are")
+        measured = self._measured = []
+        self._controller.measure(lambda witness, value: measured.append((self._asked_s, witness, value)))
+
+    def measured(self) -> Measurements:
+        table = self._measured or []
+        values = np.full((len(table), self._arm.n_joints), np.nan)
+        for row, (_, joint, value) in enumerate(table):
+            values[row, joint] = value
+        return Measurements(
+            np.array([time_s for time_s, _, _ in table]), self._controller.calibration.to_joints(values)
+        )
 
     def open(self) -> None:
         if self._port is None:
@@ -46,7 +68,8 @@ class StreamingDriver:
 
     def send(self, positions: FloatArray, duration_s: float) -> None:
         port = self._connected()
-        message = self._controller.set_point(self._controller.calibration.to_servos(positions), duration_s)
+        values = self._controller.calibration.to_servos(positions)
+        message = self._controller.set_point(values, duration_s)
         if 0.0 < duration_s < port.seconds(len(message)):
             raise HardwareError(
                 f"{port.name}: a set point takes {port.seconds(len(message)) * 1e3:.3g} ms on the line, but the "
@@ -56,8 +79,10 @@ class StreamingDriver:
         now_s = self._clock.now_s()
         self._witness.listen(port, now_s)
         if self._sent and self._witness.due(now_s):
-            message = self._with_question(port, message, duration_s, now_s)
+            message = self._with_question(port, message, duration_s, now_s, self._moving(values))
         port.write(message)
+        self._told = values
+        self._played_s += duration_s
         self._sent += 1
         self._bytes += len(message)
         self._reached_s = now_s + duration_s
@@ -99,9 +124,16 @@ class StreamingDriver:
             self._clock.sleep_until(start_s + k * _COMING_PERIOD_S)
             self._connected().write(self._controller.set_point(values, _COMING_PERIOD_S))
 
-    def _with_question(self, port: Port, message: bytes, duration_s: float, now_s: float) -> bytes:
+    def _moving(self, values: FloatArray) -> int | None:
+        """The joint that moves most, where joints are measured and one of them moves."""
+        if self._measured is None or self._told is None or not np.any(values != self._told):
+            return None
+        return int(np.argmax(np.abs(values - self._told)))
+
+    def _with_question(self, port: Port, message: bytes, duration_s: float, now_s: float, rather: int | None) -> bytes:
         """A set point and a question, which asks of those sent before: they have had their time to be reached."""
-        question = self._witness.next_question()
+        question = self._witness.next_question(rather)
+        self._asked_s = self._played_s + port.seconds(len(message) + len(question.message))
         self._witness.asked_now(now_s, self._sent, rarely=not fits(port, message, question, duration_s))
         self._free_s = now_s + seconds(port, message, question)
         if self._controller.forgets_resets:

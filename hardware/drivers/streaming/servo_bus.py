@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -68,6 +68,11 @@ class ServoBus:
         self._joints = dict(zip(self.calibration.addresses, (joint.name for joint in arm.joints), strict=True))
         self._language, self._registers = language, registers
         self._word_size = len(language.word(0))
+        self._measured: Callable[[int, float], None] | None = None
+
+    def measure(self, measured: Callable[[int, float], None]) -> None:
+        """From now on, answers to questions tell where the servo is: measured(witness, count) is called with it."""
+        self._measured = measured
 
     def attach(self, port: Port, values: FloatArray, clock: Clock) -> FloatArray:
         silent = [servo for servo in self._joints if self._ask(port, servo, self._language.ping(servo)) is None]
@@ -108,24 +113,36 @@ class ServoBus:
             moving = [servo for servo in moving if not self._held(port, servo, patience_s)]
 
     def question(self, witness: int) -> Question:
-        """Of one servo, whether it still has torque; any answer tells its faults as well."""
+        """Of one servo, whether it still has torque, and where it is if that is measured: one reading of all registers
+        from the one to the other. Any answer tells its faults as well."""
         servo = self.calibration.addresses[witness]
-        return Question(self._language.read(servo, self._registers.torque, 1), self._language.STATUS_SIZE + 1)
+        return Question(
+            self._language.read(servo, self._registers.torque, self._asked), self._language.STATUS_SIZE + self._asked
+        )
 
     def take_answer(self, witness: int, received: bytearray) -> bool:
         servo = self.calibration.addresses[witness]
         status = self._language.take_status(received)
-        while status is not None and (status.servo != servo or len(status.data) != 1):  # to a question given up before
+        while status is not None and (
+            status.servo != servo or len(status.data) != self._asked
+        ):  # to a question given up before
             status = self._language.take_status(received)
         if status is None:
             return False
         self._complain(status)
-        if status.data == b"\x00":
+        if status.data[0] == 0:
             raise HardwareError(
                 f"{self._named(status.servo)} has lost its torque: it was reset or protects itself; check the "
                 "servos' supply and what is in the arm's way"
             )
+        if self._measured is not None:
+            self._measured(witness, float(self._language.count(status.data[-self._word_size :])))
         return True
+
+    @property
+    def _asked(self) -> int:
+        """Bytes of what a question asks for."""
+        return 1 if self._measured is None else self._registers.present + self._word_size - self._registers.torque
 
     def _held(self, port: Port, servo: int, patience_s: float) -> bool:
         """Whether the servo has answered, and has where it is for its goal, or the nearest in its range."""

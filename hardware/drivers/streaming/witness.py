@@ -32,7 +32,8 @@ class Witness:
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
         self._proven = [0] * controller.witnesses
-        self._turn = 0
+        self._turn = self._whom = 0
+        self._rather = False
         self._received = bytearray()
         self._open: tuple[float, int] | None = None  # when the question was asked, and what an answer proves
         self._ask_s = 0.0
@@ -58,13 +59,16 @@ class Witness:
         """Whether it is time for a question: the one before has been answered or given up."""
         return self._open is None and now_s >= self._ask_s
 
-    def next_question(self) -> Question:
-        return self._controller.question(self._turn)
+    def next_question(self, rather: int | None = None) -> Question:
+        """To the witness whose turn it is, or by turns with that to another one that somebody would rather ask."""
+        self._whom = self._turn if rather is None or self._rather else rather
+        self._rather = rather is not None and not self._rather
+        return self._controller.question(self._whom)
 
     def asked_now(self, now_s: float, sent: int, *, rarely: bool) -> None:
         """The question has gone out: an answer proves `sent` set points. `rarely`: the line has little time for it."""
         if self._missed:  # what is answered may be the question before
-            sent = self._proven[self._turn]
+            sent = self._proven[self._whom]
         self._received.clear()
         self._open = now_s, sent
         self._ask_s = now_s + (_ASK_EVERY_S if rarely else 0.0)
@@ -92,10 +96,11 @@ class Witness:
                 return
 
     def _answered(self) -> bool:
-        if self._open is None or not self._controller.take_answer(self._turn, self._received):
+        if self._open is None or not self._controller.take_answer(self._whom, self._received):
             return False
-        self._proven[self._turn] = max(self._proven[self._turn], self._open[1])
-        self._turn = (self._turn + 1) % len(self._proven)
+        self._proven[self._whom] = max(self._proven[self._whom], self._open[1])
+        if self._whom == self._turn:
+            self._turn = (self._turn + 1) % len(self._proven)
         self._open, self._missed = None, 0
         self.answered += 1
         return True

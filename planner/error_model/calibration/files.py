@@ -59,12 +59,12 @@ def read_record(source: Path, arm: Arm) -> Record:
     """What `plan run --record` wrote. Errors: CalibrationError naming file, line and what is wrong."""
     unit = "counts" if all(joint.servo is None for joint in arm.joints) else "us"
     columns = ["t_s", "stroke", "x_mm", "y_mm", *(f"{joint.name}_{unit}" for joint in arm.joints)]
-    names, rows, lines = _cells(source)
+    names, rows, lines = cells_of(source)
     if names != columns:
         raise CalibrationError(
             str(source), f"has the columns {','.join(names)}; a record of arm '{arm.name}' has {','.join(columns)}"
         )
-    table = np.array([[_number(source, line, cell) for cell in row] for row, line in zip(rows, lines, strict=True)])
+    table = np.array([[number_of(source, line, cell) for cell in row] for row, line in zip(rows, lines, strict=True)])
     if len(table) < 2 or np.any(np.diff(table[:, 0]) <= 0):
         raise CalibrationError(str(source), "its times do not go up: is it a record of plan run?")
     return Record(table[:, 0], table[:, 1].astype(np.int64), table[:, 2:4], table[:, 4:])
@@ -74,7 +74,7 @@ def read_marks(source: Path) -> Measured:
     """What `plan measure` or a ruler found: `mark,x_mm,y_mm`, where known `h_mm` and `sd_mm`, and the line beside the
     mark: `touch_t_s,touch_x_mm,touch_y_mm,touch_fall_x,touch_fall_y`. Empty cells: not seen.
     Errors: CalibrationError."""
-    names, rows, lines = _cells(source)
+    names, rows, lines = cells_of(source)
     for needed in ("mark", "x_mm", "y_mm"):
         if needed not in names:
             raise CalibrationError(
@@ -84,7 +84,7 @@ def read_marks(source: Path) -> Measured:
 
     def value(row: list[str], line: int, name: str) -> float:
         cell = row[place[name]].strip() if name in place else ""
-        return _number(source, line, cell) if cell else math.nan
+        return number_of(source, line, cell) if cell else math.nan
 
     marks, tips, sds, touches = [], [], [], []
     for row, line in zip(rows, lines, strict=True):
@@ -116,7 +116,7 @@ def _touches(rows: FloatArray) -> Touches:
     return Touches(rows[:, 1], rows[:, 2:4], rows[:, 4:], rows[:, 0].astype(np.int64))
 
 
-def _cells(source: Path) -> tuple[list[str], list[list[str]], list[int]]:
+def cells_of(source: Path) -> tuple[list[str], list[list[str]], list[int]]:
     """Column names, rows of as many cells, and their line numbers; comments and empty lines are passed over."""
     try:
         with source.open(encoding="utf-8-sig", newline="") as file:
@@ -135,7 +135,7 @@ def _cells(source: Path) -> tuple[list[str], list[list[str]], list[int]]:
     return [name.strip() for name in names], rows, lines
 
 
-def _number(source: Path, line: int, cell: str) -> float:
+def number_of(source: Path, line: int, cell: str) -> float:
     try:
         number = float(cell)
     except ValueError:

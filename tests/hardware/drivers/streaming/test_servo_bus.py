@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hardware.drivers.driver import Driver
+from hardware.drivers.driver import Driver, Measuring
 from hardware.drivers.table import make_driver
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
@@ -172,3 +172,25 @@ def test_negative_counts_of_more_than_a_turn() -> None:
     driver.connect(POSE)
     driver.close()
     assert model.goals[-1] == {**COUNTS, 5: -70569}
+
+
+@BUSES
+def test_joints_are_measured_while_they_play_the_one_that_moves_the_most(name: str, kind: type[BusModel]) -> None:
+    model = kind(REST)
+    driver = _driver(name, Bench(model))
+    assert isinstance(driver, Measuring)
+    driver.measure()
+    driver.connect(POSE)
+    for k in range(200):
+        pose = POSE.copy()
+        pose[3] += np.radians(0.1 * k)
+        driver.send(pose, 0.02)
+    driver.flush()
+    driver.close()
+    measured = driver.measured()
+    assert np.all(np.diff(measured.times_s) >= 0)
+    assert np.count_nonzero(~np.isnan(measured.positions), axis=0).min() > 10
+    of_the_fourth = ~np.isnan(measured.positions[:, 3])
+    assert np.count_nonzero(of_the_fourth) > 90
+    expected = POSE[3] + np.radians(0.1) * np.floor(measured.times_s[of_the_fourth] / 0.02)
+    np.testing.assert_allclose(measured.positions[of_the_fourth, 3], expected, atol=np.radians(0.3))

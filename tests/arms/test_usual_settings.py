@@ -1,0 +1,34 @@
+"""What is planned with for an arm where nobody says it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from planner.arms.accuracy import Accuracy
+from planner.arms.arm_file import known_arms, load_arm
+from planner.arms.usual_settings import usual_rate_hz, usual_tolerance_mm
+
+ARM = load_arm("drawing_arm")
+
+
+@pytest.mark.parametrize("name", known_arms())
+def test_arms_that_come_along_keep_the_usual_settings(name: str) -> None:
+    assert usual_rate_hz(load_arm(name)) == pytest.approx(100.0)
+    assert usual_tolerance_mm(load_arm(name)) == 0.05
+
+
+@given(st.floats(0.0001, 0.1))
+def test_servos_take_whole_samples_a_hundred_a_second_at_least(period_s: float) -> None:
+    rate_hz = usual_rate_hz(replace(ARM, set_point_period_s=period_s))
+    assert 100.0 - 1e-6 <= rate_hz < 100.0 + 1 / period_s + 1e-6
+    assert rate_hz * period_s == pytest.approx(round(rate_hz * period_s))
+
+
+@given(st.floats(0.0, 2.0))
+def test_the_tolerance_follows_the_error_that_is_expected(tip_mm: float) -> None:
+    arm = replace(ARM, accuracy=Accuracy(49, tip_mm, 0.1, (0.0,) * ARM.n_joints))
+    assert usual_tolerance_mm(arm) == pytest.approx(max(0.05, tip_mm / 2**0.5), rel=0.05)
