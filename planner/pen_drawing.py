@@ -13,6 +13,7 @@ from planner.arrays import BoolArray, FloatArray
 from planner.counted import counted
 from planner.drawing.flatten import flatten_all
 from planner.drawing.join import join_strokes
+from planner.drawing.loops import with_loops
 from planner.drawing.metric import Metric
 from planner.drawing.order import ordered
 from planner.drawing.path_work import longer, repeated, simplified, without_doubles
@@ -168,9 +169,8 @@ def _strokes(
         if doubled_mm:
             warnings.append(f"drawn once, though the drawing has it more than once: {doubled_mm:.1f} mm of line")
     if not (settings.keep_order or settings.reverse):
-        strokes = join_strokes(
-            strokes, JOIN_SHARE * settings.tolerance_mm if settings.join_mm is None else settings.join_mm
-        )
+        join_mm = JOIN_SHARE * settings.tolerance_mm if settings.join_mm is None else settings.join_mm
+        strokes = with_loops(join_strokes(strokes, join_mm), join_mm)
     if settings.simplify_mm:
         strokes = simplified(strokes, settings.simplify_mm)
     if settings.min_length_mm:

@@ -1,15 +1,18 @@
 """The tolerance budget: what each station from the drawing to the samples may spend of the tolerance.
 
-It is spent once: chords in the place of curves and gaps that are closed take a little, and all the rest is for what the
-pen makes of the strokes, measured as one deviation, both ways: rounded corners, straight lines or cubics between
+It is spent once: chords in the place of curves take a little, and all the rest is for what the pen makes of the strokes, measured as one deviation, both ways: rounded corners, straight lines or cubics between
 samples, and that the joints move straight rather than the tip.
 """
 
 from __future__ import annotations
 
-FLATTEN_SHARE = JOIN_SHARE = 0.02
-"""Chords in the place of curves, and gaps that are closed."""
-STROKE_SHARE = 1.0 - FLATTEN_SHARE - JOIN_SHARE
+FLATTEN_SHARE = 0.04
+"""Chords in the place of curves."""
+JOIN_SHARE, NARROW_SHARE = 2.0, 0.5
+"""How far ends may be apart that are joined: the middle of the gap is half of that off the drawing. The pen may stray
+there by all that it may elsewhere where the gap is a narrow one; wider ones are looked at, and crossed where it strays
+little."""
+STROKE_SHARE = 1.0 - FLATTEN_SHARE
 """How far the pen may be off a stroke, and the stroke off what the pen draws, at the samples and between them."""
 CHORD_SHARE = 0.04
 """How far of this the tip may bulge from straight lines between samples, as it is the joints that move straight."""
