@@ -19,7 +19,7 @@ from planner.drawing.image_options import image_options
 from planner.drawing.options import AS_A_BROWSER, ReadingOptions
 from planner.errors import TrajectoryFileError, UsageError
 from planner.pens import GroupBy, colour_of, hex_of
-from planner.settings import MOST_COPIES
+from planner.settings import MOST_COPIES, Timing
 from planner.tile import Tile
 
 FORMAT_VERSION = 1
@@ -156,6 +156,7 @@ class Head:
     path_work: PathWork = NO_WORK
     fill: FillOptions = NO_FILL
     beyond_limits: float = 1.0
+    timing: Timing = Timing.OPTIMAL
 
     def text(self) -> str:
         """The comment lines."""
@@ -221,6 +222,8 @@ class Head:
             )
             if value is not None and value != usual
         ]
+        if self.timing is not Timing.OPTIMAL:
+            entries.append(("timing", self.timing.value))
         if self.fill != NO_FILL:
             entries.append(("fill", str(self.fill)))
         if self.beyond_limits != 1.0:
@@ -299,6 +302,7 @@ def read_head(name: str, file: IO[str]) -> tuple[Head, str, int]:
         _path_work(name, found),
         _fill(name, found),
         _beyond_limits(name, found),
+        _timing(name, found),
     )
     return head, line, number
 
@@ -411,6 +415,15 @@ def _chosen(name: str, found: Mapping[str, tuple[str, int]]) -> Chosen:
         if (key := f"only_{by}") in found:
             return Chosen(layers, by, _names(name, found, key))
     return Chosen(layers)
+
+
+def _timing(name: str, found: Mapping[str, tuple[str, int]]) -> Timing:
+    text, line = found.get("timing", (Timing.OPTIMAL.value, None))
+    try:
+        return Timing(text)
+    except ValueError:
+        wanted = " or ".join(Timing)
+        raise TrajectoryFileError(name, line, f"'# timing:' is '{shown(text)}'; wanted {wanted}") from None
 
 
 def _fill(name: str, found: Mapping[str, tuple[str, int]]) -> FillOptions:

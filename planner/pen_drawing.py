@@ -83,6 +83,7 @@ class PenDrawing:
             settings.lowering_speed_mm_s,
             settings.rate_hz,
             settings.tolerance_mm,
+            settings.timing,
         )
 
     def take(self, svg_to_arm: FloatArray) -> None:

@@ -175,6 +175,7 @@ def planned(
         chosen=Chosen(settings.layers),
         reading=drawing.reading,
         fill=settings.fill,
+        timing=settings.timing,
         path_work=PathWork(settings.join_mm, settings.dedup_mm, settings.simplify_mm, settings.passes),
     )
     verify(trajectory, arm)

@@ -27,6 +27,14 @@ class Method(StrEnum):
     CLOSED_FORM = "closed-form"
 
 
+class Timing(StrEnum):
+    """How the pen goes along what it draws: in the least time along a smooth path, or from target to target by Ruckig,
+    at rest in each."""
+
+    OPTIMAL = "optimal"
+    RUCKIG = "ruckig"
+
+
 class CanvasKind(StrEnum):
     """Which rectangle of the paper is drawn on."""
 
@@ -104,6 +112,7 @@ class PlanSettings:
         method: How configurations are found.
         rate_hz: Samples a second, 50 to 10 000. A command that is not told asks the arm: see `usual_settings`.
         tolerance_mm: How far the pen may be off the drawing; likewise.
+        timing: How motions are timed.
         speed_mm_s: Cap on the pen's speed on the paper, None for the arm's own.
         lowering_speed_mm_s: Cap on its vertical speed when it comes down.
         dwell_s: Rest on the paper after lowering.
@@ -140,6 +149,7 @@ class PlanSettings:
 
     arm: str = "drawing_arm"
     method: Method = Method.PATH
+    timing: Timing = Timing.OPTIMAL
     rate_hz: float = 100.0
     tolerance_mm: float = 0.05
     speed_mm_s: float | None = None
@@ -193,6 +203,7 @@ class PlanSettings:
         }
         choices = {
             "method": one_of("method", self.method, Method),
+            "timing": one_of("timing", self.timing, Timing),
             "canvas": one_of("canvas", self.canvas, CanvasKind),
             "place": one_of("place", self.place, PlaceKind),
             "orientation": one_of("orientation", self.orientation, Orientation),

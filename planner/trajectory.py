@@ -35,6 +35,7 @@ from planner.head import (
     read_head,
     shown,
 )
+from planner.settings import Timing
 
 if TYPE_CHECKING:
     import pandas
@@ -76,6 +77,7 @@ class Trajectory:
         path_work: What was done to its lines beforehand.
         fill: How its areas were filled.
         beyond_limits: Of a test motion alone, how many times the limits of acceleration and jerk it goes to; else 1.
+        timing: How its motions were timed.
         paper: Where the paper lies that arm millimetres are counted on, in the frame of the base.
         reading: How the drawing was read.
     """
@@ -101,6 +103,7 @@ class Trajectory:
     path_work: PathWork = NO_WORK
     fill: FillOptions = NO_FILL
     beyond_limits: float = 1.0
+    timing: Timing = Timing.OPTIMAL
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> Trajectory:
@@ -212,6 +215,7 @@ class Trajectory:
             self.path_work,
             self.fill,
             self.beyond_limits,
+            self.timing,
         )
 
     @property
@@ -314,6 +318,7 @@ def read_trajectory(source: Path) -> Trajectory:
         path_work=head.path_work,
         fill=head.fill,
         beyond_limits=head.beyond_limits,
+        timing=head.timing,
     )
 
 

@@ -19,6 +19,7 @@ class PlanOptions(TypedDict, total=False):
     weights and how to read as mappings."""
 
     method: str
+    timing: str
     rate_hz: float
     tolerance_mm: float
     speed_mm_s: float | None

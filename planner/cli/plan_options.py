@@ -23,6 +23,7 @@ from planner.settings import (
     Method,
     PlaceKind,
     PlanSettings,
+    Timing,
 )
 
 
@@ -63,6 +64,13 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         metavar="NAME=W,...",
         help="what method path spends spare joints on: time, sensitivity (of the drawing to joints that run late or"
         " stand wrong), reversals (of joints), limits (distance from them); those not named weigh 1, reversals 0",
+    )
+    motion.add_argument(
+        "--timing",
+        choices=[timing.value for timing in Timing],
+        default=default.timing.value,
+        help="optimal: the least time along a smooth path within the tolerance; ruckig: from one pen target to the next"
+        " in joint space by Ruckig, all joints at once, at rest in each (default: %(default)s)",
     )
     motion.add_argument(
         "--rate",
@@ -128,6 +136,7 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
         method=Method(options.method),
         rate_hz=rate_hz,
         tolerance_mm=tolerance_mm,
+        timing=Timing(options.timing),
         speed_mm_s=options.speed,
         lowering_speed_mm_s=options.lowering_speed,
         dwell_s=options.dwell,

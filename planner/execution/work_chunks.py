@@ -16,8 +16,9 @@ from planner.motion.timed_stroke import Contact, TimedStroke
 from planner.motion.tolerance import STROKE_SHARE
 from planner.placement.pen_path import ROUNDED_SHARE
 from planner.placement.pieces import Piece, in_pieces
-from planner.settings import Method
+from planner.settings import Method, Timing
 from planner.travel.clear_moves import clear_travel_moves
+from planner.travel.joined_targets import joined_strokes
 from planner.travel.travel_moves import TravelMove, TravelRules
 
 _CHUNK_WORK = 4000.0
@@ -80,7 +81,8 @@ def travel_chunks(
 def timed_strokes(chunk: StrokeChunk) -> list[TimedStroke | InfeasiblePath]:
     """Joint samples of each stroke, or why it cannot be drawn."""
     context = chunk.context
-    return samples_of_strokes(context.model, context.references, context.settings, chunk.strokes)
+    samples = joined_strokes if context.settings.timing is Timing.RUCKIG else samples_of_strokes
+    return samples(context.model, context.references, context.settings, chunk.strokes)
 
 
 def planned_travel_moves(chunk: TravelChunk) -> list[TravelMove]:

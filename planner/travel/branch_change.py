@@ -6,6 +6,8 @@ The tip cannot stay near the paper while an arm folds over.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from planner.kinematics.chain import Kinematics
@@ -29,7 +31,22 @@ def plan_branch_change(
     kinematics: Kinematics, limits: Limits, rules: TravelRules, start: Contact, end: Contact
 ) -> TravelMove:
     """The travel move between two contacts by way of the air; not exact where no way clear of the paper is found."""
-    up, down = plan_travel_moves(kinematics, limits, rules, [start, None], [None, end])
+    return plan_by_air(kinematics, limits, rules, [start], [end])[0]
+
+
+def plan_by_air(
+    kinematics: Kinematics, limits: Limits, rules: TravelRules, starts: Sequence[Contact], ends: Sequence[Contact]
+) -> list[TravelMove]:
+    """Such travel moves from each start to the end of the same index."""
+    nowhere = [None] * len(starts)
+    ups, downs = (
+        plan_travel_moves(kinematics, limits, rules, starts, nowhere),
+        plan_travel_moves(kinematics, limits, rules, nowhere, ends),
+    )
+    return [_by_air(kinematics, limits, rules, up, down) for up, down in zip(ups, downs, strict=True)]
+
+
+def _by_air(kinematics: Kinematics, limits: Limits, rules: TravelRules, up: TravelMove, down: TravelMove) -> TravelMove:
     corners = air_way(
         kinematics, limits, rules, kinematics.independent_of(up.joints[-1]), kinematics.independent_of(down.joints[0])
     )

@@ -22,6 +22,7 @@ from planner.kinematics.projection import project
 from planner.kinematics.quickest_lift import quickest_lifts
 from planner.motion.between_samples import travel_move_excess
 from planner.motion.timed_stroke import Contact
+from planner.settings import Timing
 from planner.timing.length_bound import MOST_SAMPLES_OF_A_TRAVEL_MOVE, require_bounded
 from planner.travel.ruckig_profile import NoSuchMove, RestToRest, between_states, rest_to_rest
 from planner.travel.travel_choice import (
@@ -65,13 +66,14 @@ _TURN_MARGIN = 0.999
 @dataclass(frozen=True, slots=True)
 class TravelRules:
     """Heights in mm above the paper, the cap on the speed of lowering, the sample rate, and how far the tip may be off
-    its way between samples."""
+    its way between samples. timing: whether the way up, over and down overlap, or halt in between."""
 
     clearance_mm: float
     lift_mm: float
     lowering_speed_mm_s: float
     rate_hz: float
     tolerance_mm: float
+    timing: Timing = Timing.OPTIMAL
 
 
 @dataclass(frozen=True, eq=False, slots=True)
