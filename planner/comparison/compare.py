@@ -22,7 +22,7 @@ from planner.inverse_kinematics.dls import FOR_DRAWING
 from planner.inverse_kinematics.references import home_of
 from planner.progress import Report
 from planner.redundancy.arm_model import ArmModel
-from planner.settings import PlanSettings
+from planner.settings import PlanSettings, Timing
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,15 +94,20 @@ def compare(model: ArmModel, targets: Targets, start: FloatArray, settings: Plan
     arm = model.arm
     results = []
     times: dict[str, StrokeTimes] = {}
+    baseline: dict[str, StrokeTimes] = {}
     for index, method in enumerate(METHODS):
         report("comparing", index, len(METHODS))
         result = _result(method, arm, targets, start, settings)
         if targets.strokes and result.measured is not None and method.drawn_by is not None:
-            times[method.name] = stroke_times(model, targets.strokes, replace(settings, method=method.drawn_by))
+            drawn_so = replace(settings, method=method.drawn_by)
+            times[method.name], baseline[method.name] = (
+                stroke_times(model, targets.strokes, replace(drawn_so, timing=timing))
+                for timing in (settings.timing, Timing.RUCKIG)
+            )
         results.append(result)
     report("comparing", len(METHODS), len(METHODS))
     if targets.kind is not TargetKind.SINGLE:
-        return Comparison(arm, targets, start, _with_times(results, times), ())
+        return Comparison(arm, targets, start, _with_times(results, times, baseline), ())
     _require_reach(arm, targets, results)
     return Comparison(
         arm,
@@ -129,24 +134,32 @@ def _result(
     return MethodResult(method, figures_of(arm, targets, measured, iterates=method.iterates), measured, tuple(failures))
 
 
-def _with_times(results: Sequence[MethodResult], times: dict[str, StrokeTimes]) -> tuple[MethodResult, ...]:
+def _with_times(
+    results: Sequence[MethodResult], times: dict[str, StrokeTimes], baseline: dict[str, StrokeTimes]
+) -> tuple[MethodResult, ...]:
     """The results with the time of the strokes; those that one method is refused are left out of what is common."""
     if not times:
         return tuple(results)
     drawn_by_all: BoolArray = np.all(np.isfinite([each.seconds for each in times.values()]), axis=0)
     return tuple(
-        _with_time(result, times[result.method.name], drawn_by_all) if result.method.name in times else result
+        _with_time(result, times[result.method.name], baseline[result.method.name], drawn_by_all)
+        if result.method.name in times
+        else result
         for result in results
     )
 
 
-def _with_time(result: MethodResult, times: StrokeTimes, drawn_by_all: BoolArray) -> MethodResult:
+def _with_time(
+    result: MethodResult, times: StrokeTimes, baseline: StrokeTimes, drawn_by_all: BoolArray
+) -> MethodResult:
     drawn = ~np.isnan(times.seconds)
+    joined_s = float(baseline.seconds[drawn_by_all].sum())
     figures = replace(
         result.figures,
         strokes_refused=int((~drawn).sum()),
         drawing_s=float(times.seconds[drawn].sum()) if drawn.any() else None,
         drawing_common_s=float(times.seconds[drawn_by_all].sum()) if drawn_by_all.any() else None,
+        ruckig_common_s=joined_s if drawn_by_all.any() and np.isfinite(joined_s) else None,
     )
     if not times.infeasible_paths:
         return replace(result, figures=figures)

@@ -30,6 +30,7 @@ class Figures:
     targets' distance, rms. sideways: error along the paper per degree (or mm) of error of the joints, rms over
     them. repeat: largest change of a joint where the same target is visited again (`Targets.backwards`).
     drawing_s: pen-down time of the strokes that are not refused; drawing_common_s: of those that no method refuses.
+    ruckig_common_s: of the same, from target to target by Ruckig; None where one cannot be drawn so.
     Of revolute joints in degrees, of sliding ones in mm.
     """
 
@@ -58,6 +59,7 @@ class Figures:
     strokes_refused: int | None = None
     drawing_s: float | None = None
     drawing_common_s: float | None = None
+    ruckig_common_s: float | None = None
 
 
 def figures_of(arm: Arm, targets: Targets, found: Measured, *, iterates: bool) -> Figures:

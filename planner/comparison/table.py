@@ -70,6 +70,7 @@ _ROWS: tuple[tuple[str, str, Report], ...] = (
     ("strokes_refused", "strokes refused", _count),
     ("drawing_s", "drawing time of the others (s)", _three_digits),
     ("drawing_common_s", "drawing time, strokes all can draw (s)", _three_digits),
+    ("ruckig_common_s", "  the same by --timing ruckig (s)", _three_digits),
 )
 _OF_SLIDES = {"excess_mm", "step_mm", "roughness_mm_mm2", "repeat_mm"}
 

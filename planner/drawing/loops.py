@@ -19,6 +19,8 @@ from planner.polyline_length import polyline_length
 
 _AT_ONCE = 500
 """Closed strokes whose neighbours are looked for together."""
+_ROUNDING_MM = 1e-9
+"""Points nearer than this to the one before are the same: a way of that length has no direction."""
 _LEAST_ROUND = 4.0
 """Length of a stroke whose ends may be joined, in lengths that may be joined: a shorter one is no way round."""
 
@@ -93,7 +95,7 @@ def _touches(strokes: Sequence[FloatArray], loops: IntArray, tolerance_mm: float
     is_open = np.array([len(stroke) > 1 for stroke in strokes]) & ~is_closed_one
     opened = np.flatnonzero(is_open)
     within_mm = tolerance_mm * (1.0 + 1e-9)
-    ends = shapely.points([end for index in opened.tolist() for end in strokes[index][[0, -1]]])
+    ends = np.asarray(shapely.points(np.array([strokes[index][[0, -1]] for index in opened.tolist()]).reshape(-1, 2)))
     others = np.flatnonzero(is_open | is_closed_one)  # a tap is no line to be led on
     for owners, targets, owner_mm in (
         (np.repeat(opened, 2), ends, np.stack([np.zeros(len(opened)), shapely.length(lines[opened])], axis=1).ravel()),
@@ -138,8 +140,9 @@ def _led_through(
             is_drawn.add(index)
             ways.append(_gentler_way(strokes[index], neighbours[index], on_mm, _heading(pieces)))
     whole = np.concatenate(pieces)
-    is_new = np.concatenate(([True], np.any(whole[1:] != whole[:-1], axis=1)))
+    is_new = np.concatenate(([True], np.abs(np.diff(whole, axis=0)).max(axis=1) > _ROUNDING_MM))
     led: FloatArray = whole[is_new]
+    led[-1] = whole[-1]
     return led
 
 

@@ -13,10 +13,10 @@ _PAIRS = ("at",)
 _SWITCHES = ("mirror", "keep-order", "reverse", "skip-unreachable", "occlude", "no-fit", "fit")
 _VALUES = (
     "arm", "method", "timing", "weights", "rate", "tolerance", "speed", "lift", "lowering-speed", "dwell",
-    "canvas", "place", "scale", "paper", "orientation", "align", "origin", "margin", "rotate", "copies", "layers", "by", "join",
-    "dedup", "simplify", "min-length", "passes", "fill", "fill-angle", "fill-spacing", "fill-inset", "fill-by",
-    "stroke-width", "text", "crop", "dpi", "image", "image-line", "image-detail", "image-ink", "image-levels",
-    "image-angle",
+    "canvas", "place", "scale", "paper", "orientation", "align", "origin", "margin", "rotate", "copies", "layers",
+    "by", "join", "dedup", "simplify", "min-length", "passes", "fill", "fill-angle", "fill-spacing", "fill-inset",
+    "fill-by", "stroke-width", "text", "crop", "dpi", "image", "image-line", "image-detail", "image-ink",
+    "image-levels", "image-angle",
 )  # fmt: skip
 _LONGEST = 200
 
