@@ -24,6 +24,9 @@ _N_RISES, _N_FALLS = 10, 5
 _HANDOVERS_MM, _N_HANDOVERS = 2.0 ** np.arange(-10, 10, 0.5), 7
 _SPEEDS_MM_S, _N_SPEEDS = 30.0 * 2.0 ** np.arange(6, -12, -0.5), 3
 """Heights at which to hand over and speeds of lowering that are tried, and how many beside those that rules give."""
+_CAPS_MM_S = 30.0 * 2.0 ** np.arange(0.0, 4.0)
+"""Caps on the speed of lowering under which what is quickest is a candidate under any laxer one, too: it may be made
+where what formulas find quicker may not."""
 RESTING_SHARE = 0.6
 """Share of the limits for the height of a travel move that is at rest at the lift height."""
 _SHARES = np.linspace(0.1, 1.0, 13)
@@ -76,7 +79,7 @@ def rest_of(slopes: Slopes, limits: Limits, share: FloatArray) -> Limits:
 class Candidates:
     """Ways to make each travel move, all (n_travel_moves, n_candidates): the share of the limits that the height has
     above the handover, the height of the handover, those that the rise and the fall (backwards, as a rise) aim at, in
-    mm, and the speed in mm/s that the fall keeps below. seconds: what the formulas make of it, inf where there is no
+    mm, and the speeds in mm/s that the fall keeps below, and all of the way down. seconds: what the formulas make of it, inf where there is no
     such way."""
 
     share: FloatArray
@@ -84,6 +87,7 @@ class Candidates:
     rise_mm: FloatArray
     fall_mm: FloatArray
     fall_mm_s: FloatArray
+    cap_mm_s: FloatArray
     seconds: FloatArray
 
 
@@ -95,10 +99,17 @@ def quickest_candidates(
     The heights, and the speeds below the cap at which the pen may come down, are the same whatever the clearance and
     the cap, which only say where the lists end: what a stricter rule allows is tried under a laxer one, too.
     """
-    speeds = _SPEEDS_MM_S[lowering_mm_s * (1 - 1e-9) > _SPEEDS_MM_S][:_N_SPEEDS]
+    caps = [lowering_mm_s, *_CAPS_MM_S[lowering_mm_s * (1 - 1e-9) > _CAPS_MM_S].tolist()]
     higher = _HANDOVERS_MM[clearance_mm * (1 + 1e-9) < _HANDOVERS_MM][:_N_HANDOVERS]
     made = [
-        _quickest_from(slopes, limits, height, lift_mm, np.concatenate(([lowering_mm_s], speeds)))
+        _quickest_from(
+            slopes,
+            limits,
+            height,
+            lift_mm,
+            np.concatenate(([cap], _SPEEDS_MM_S[cap * (1 - 1e-9) > _SPEEDS_MM_S][:_N_SPEEDS])),
+        )
+        for cap in caps
         for height in (clearance_mm, *higher.tolist())
         if height < lift_mm
     ]
@@ -149,6 +160,7 @@ def _quickest_from(
         rises[rise],
         falls[aim],
         speeds_mm_s[speed],
+        np.full(at.shape, cap),
         seconds,
     )
 

@@ -38,10 +38,10 @@ _PROBES = 9
 _HEIGHT_PROBES = 33
 _FINE = 4
 """Samples per period at which limits are checked."""
+_TOPS = (1.02, 1.05, 1.1, 1.2, 1.4, 2.0, 3.0, 5.0)
+"""Heights of a hop on the spot, in clearances."""
 _TRIED = 40
 """How many of the candidates that are quickest by formulas are made at most, for each travel move."""
-_WORTH = 0.98
-"""Share of the time of the best so far that a candidate has to be below, by formulas, to be made."""
 _ABOUT = (0.95, 1.0, 1.05)
 """Heights to aim at about the one that formulas find best, as they rank only."""
 _SLOWER, _MARGIN = 1.5, 0.98
@@ -340,12 +340,15 @@ def _timed(shapes: Sequence[_Shape], slopes: Slopes, limits: Limits, rules: Trav
         for of_up, of_down in zip(up, down, strict=True)
     ]
     rest = _ways(shapes, slopes, limits, np.full(len(shapes), RESTING_SHARE))
-    best = [_resting_move(*each, rules) for each in zip(shapes, rest, heights, strict=True)]
+    best = [
+        min((_resting_move(*each, rules), *_hops_on_the_spot(*each, rules)), key=lambda candidate: candidate.natural_s)
+        for each in zip(shapes, rest, heights, strict=True)
+    ]
     candidates = quickest_candidates(slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s)
     can_turn = np.array([shape.contacts == (True, True) for shape in shapes])
     for column in range(min(_TRIED, candidates.seconds.shape[1])):
         so_far_s = np.array([candidate.natural_s for candidate in best])
-        moves = np.flatnonzero(can_turn & (candidates.seconds[:, column] < _WORTH * so_far_s))
+        moves = np.flatnonzero(can_turn & (candidates.seconds[:, column] < so_far_s))
         if not len(moves):  # what comes later takes longer still
             break
         chosen = [shapes[move] for move in moves.tolist()]
@@ -387,6 +390,7 @@ class _Aims:
     rise_mm: float
     fall_mm: float
     fall_mm_s: float
+    cap_mm_s: float
 
 
 def _rows(limits: Limits) -> list[_Bounds]:
@@ -420,12 +424,33 @@ def _turning_move(shape: _Shape, over: RestToRest, heights: _Heights, aims: _Aim
         aims.handover_mm,
         (up_speed, up_braking),
         (-down_speed, down_braking),
-        -heights.down[0] / _TURN_MARGIN,
+        -min(heights.down[0], aims.cap_mm_s) / _TURN_MARGIN,
         (heights.up[0], push, aims.share * min(heights.up[2], heights.down[2])),
         over.duration_s,
     )
     until = clear[0] + above.duration_s
     return _Timed(shape, up, over, down, above, clear[0], until, until + clear[1])
+
+
+def _hops_on_the_spot(shape: _Shape, over: RestToRest, heights: _Heights, rules: TravelRules) -> Iterator[_Timed]:
+    """The travel move that ends where it begins: up and down again with one and the same braking at the top, as low as
+    leaves a sample above the clearance. There is none where the pen is to go elsewhere, or so high."""
+    if not shape.is_still or shape.contacts != (True, True):
+        return
+    for aim in _TOPS:
+        top_mm = aim * rules.clearance_mm
+        if top_mm > rules.lift_mm:
+            return
+        turning = _TURN_MARGIN * min(
+            min(float(turning_acceleration(np.array(top_mm), np.array(jerk), velocity)), acceleration)
+            for velocity, acceleration, jerk in (heights.up, heights.down)
+        )
+        up, down = (rest_to_rest(top_mm, *bounds, turning) for bounds in (heights.up, heights.down))
+        clear = [rise.time_at(rules.clearance_mm) for rise in (up, down)]
+        natural = up.duration_s + down.duration_s
+        if (natural - sum(clear)) * rules.rate_hz >= 1.0:
+            yield _Timed(shape, up, over, down, None, clear[0], natural - clear[1], natural)
+            return
 
 
 def _rise(top_mm: float, bounds: _Bounds) -> RestToRest:

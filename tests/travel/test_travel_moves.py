@@ -240,6 +240,15 @@ def _whole_s(arm: Arm, how: TravelRules) -> float:
     return sum(len(one.joints) - 1 for one in made) / how.rate_hz
 
 
+def _on_the_spot_s(arm: Arm) -> list[float]:
+    """By the speed of lowering: a hop that goes nowhere has no motion over the paper to wait for."""
+    (contact,) = contacts(arm, PLACES[arm.name][:1])
+    return [
+        len(move(arm, contact, contact, rules(1000.0, lowering_mm_s=speed)).joints)
+        for speed in (10.0, 30.0, 90.0, 300.0)
+    ]
+
+
 @pytest.mark.parametrize("name", DRAWING_ARMS)
 def test_laxer_rules_make_no_slower_travel_moves(name: str) -> None:
     arm = load_once(name)
@@ -248,8 +257,34 @@ def test_laxer_rules_make_no_slower_travel_moves(name: str) -> None:
         _whole_s(arm, TravelRules(clearance, LIFT_MM, 30.0, 100.0, 0.05))
         for clearance in (2.0, 1.0, 0.7, 0.5, 0.35, 0.25, 0.1)
     ]
-    for times in (by_speed, by_clearance):
-        assert all(after <= before * 1.1 for before, after in pairwise(times)), times
+    by_lift = [_whole_s(arm, rules(lift_mm=lift)) for lift in (1.5, 2.0, 3.0, 5.0, 8.0, 15.0)]
+    by_tolerance = [
+        _whole_s(arm, TravelRules(CLEARANCE_MM, LIFT_MM, 30.0, 100.0, tolerance))
+        for tolerance in (0.005, 0.01, 0.05, 0.2, 1.0)
+    ]
+    for times in (by_speed, by_clearance, by_lift, by_tolerance, _on_the_spot_s(arm)):
+        assert times == sorted(times, reverse=True)
+
+
+@pytest.mark.parametrize("name", DRAWING_ARMS)
+@settings(deadline=None, max_examples=25)
+@given(data=st.data())
+def test_no_limit_of_a_joint_that_is_relaxed_costs_time(name: str, data: st.DataObject) -> None:
+    """Choices that rank by formulas may miss a part of a percent, and no more."""
+    arm = load_once(name)
+    on_paper, limits = contacts(arm, PLACES[name]), Limits.of(arm)
+    factors = st.lists(st.sampled_from([1.0, 1.0, 1.1, 2.0, 5.0]), min_size=arm.n_joints, max_size=arm.n_joints)
+    laxer = Limits(
+        *(limit * np.array(data.draw(factors)) for limit in (limits.velocity, limits.acceleration, limits.jerk))
+    )
+    before, after = (
+        sum(
+            len(one.joints) - 1
+            for one in plan_travel_moves(kinematics_of(arm), each, rules(1000.0), on_paper[:-1], on_paper[1:])
+        )
+        for each in (limits, laxer)
+    )
+    assert after <= before * 1.003
 
 
 @pytest.mark.parametrize("name", DRAWING_ARMS)
@@ -258,6 +293,6 @@ def test_the_choice_is_near_the_best_of_a_dense_search(name: str, monkeypatch: p
     chosen = _whole_s(arm, rules(1000.0))
     for key, value in (("_N_RISES", 24), ("_N_FALLS", 12), ("_SHARES", np.linspace(0.1, 1.0, 31))):
         monkeypatch.setattr(f"planner.travel.travel_choice.{key}", value)
-    for key, wide in (("_TRIED", 500), ("_WORTH", 1.0), ("_ABOUT", (0.9, 0.95, 1.0, 1.05, 1.1))):
+    for key, wide in (("_TRIED", 500), ("_ABOUT", (0.9, 0.95, 1.0, 1.05, 1.1))):
         monkeypatch.setattr(f"planner.travel.travel_moves.{key}", wide)
     assert chosen <= _whole_s(arm, rules(1000.0)) * 1.02
