@@ -30,9 +30,10 @@ from planner.execution.work_chunks import (
 from planner.execution.workers import ChunkExecutor
 from planner.head import LeftOut
 from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
+from planner.motion.crossed_gaps import Gaps, left_open
 from planner.motion.speed_limit import pen_speed_mm_s
 from planner.motion.timed_stroke import TimedStroke
-from planner.motion.tolerance import FLATTEN_SHARE, JOIN_SHARE
+from planner.motion.tolerance import FLATTEN_SHARE, JOIN_SHARE, NARROW_SHARE
 from planner.placement.clip import clip_strokes
 from planner.placement.pieces import Piece
 from planner.placement.short_gaps import SHORTEST_GAP_MM, gaps_to_draw
@@ -57,7 +58,8 @@ class PenDrawing:
 
     strokes: (n, 2) each, arm mm, in the order in which they are drawn; timed: their motions; moves: the travel moves
     before, between and after them, from rest and to rest in the air. dropped: strokes that are left out on purpose.
-    left_out: these, and what could not be drawn. notes: what to say of it.
+    gaps: those that may be crossed, unless the user said so. left_out: what was dropped, and what could not be drawn.
+    notes: what to say of it.
     """
 
     group: PenGroup
@@ -66,6 +68,7 @@ class PenDrawing:
     timed: list[TimedStroke] = field(default_factory=list)
     moves: list[TravelMove] = field(default_factory=list)
     dropped: list[FloatArray] = field(default_factory=list)
+    gaps: Gaps | None = None
     left_out: LeftOut = field(default_factory=LeftOut)
     notes: list[str] = field(default_factory=list)
 
@@ -89,7 +92,7 @@ class PenDrawing:
     def take(self, svg_to_arm: FloatArray) -> None:
         """Strokes from the outlines where `svg_to_arm` (2, 3) puts them, as their lines are wanted. Errors: PlanError,
         UsageError."""
-        self.strokes, self.dropped, self.notes = _strokes(self.group, svg_to_arm, self.context.settings)
+        self.strokes, self.gaps, self.dropped, self.notes = _strokes(self.group, svg_to_arm, self.context.settings)
 
     def order(self, start_mm: FloatArray) -> None:
         """What of the strokes the arm reaches, in its order from `start_mm` (2,) on. Errors: PlanError."""
@@ -111,6 +114,21 @@ class PenDrawing:
         """The strokes' motions; `first` is the number of the first of them. Errors: PlanError, UsageError."""
         self.timed, self.strokes, lost, notes = _timed_strokes(executor, self.context, self.strokes, report, first)
         self._lose(lost, notes)
+        while self.gaps is not None:
+            parts = _left_open(self.context, self.gaps, self.strokes, self.timed)
+            again = [part for some in parts if len(some) > 1 for part in some]
+            if not again:
+                break
+            made, drawn, lost, notes = _timed_strokes(executor, self.context, again, report, first)
+            self._lose(lost, notes)
+            anew = {part.tobytes(): stroke for part, stroke in zip(drawn, made, strict=True)}
+            whole = [
+                (part, anew.get(part.tobytes()) if len(some) > 1 else stroke)
+                for some, stroke in zip(parts, self.timed, strict=True)
+                for part in some
+            ]
+            self.strokes = [part for part, stroke in whole if stroke is not None]
+            self.timed = [stroke for _, stroke in whole if stroke is not None]
 
     def travel(self, executor: ChunkExecutor, report: Report, first: int) -> None:
         """The travel moves. Errors: PlanError."""
@@ -157,9 +175,11 @@ def require_bounded_whole(drawings: Sequence[PenDrawing]) -> None:
 
 def _strokes(
     group: PenGroup, svg_to_arm: FloatArray, settings: PlanSettings
-) -> tuple[list[FloatArray], list[FloatArray], list[str]]:
-    """Strokes (n, 2), arm mm, those that are too short to be drawn, and what is to be said of them."""
+) -> tuple[list[FloatArray], Gaps | None, list[FloatArray], list[str]]:
+    """Strokes (n, 2), arm mm, the gaps that they may cross if not asked to, those that are too short to be drawn, and
+    what is to be said of them."""
     warnings: list[str] = []
+    gaps: Gaps | None = None
     short: list[FloatArray] = []
     short_gaps = gaps_to_draw(group.outlines, svg_to_arm)
     if short_gaps:
@@ -170,15 +190,27 @@ def _strokes(
         if doubled_mm:
             warnings.append(f"drawn once, though the drawing has it more than once: {doubled_mm:.1f} mm of line")
     if not (settings.keep_order or settings.reverse):
-        join_mm = JOIN_SHARE * settings.tolerance_mm if settings.join_mm is None else settings.join_mm
-        strokes = with_loops(join_strokes(strokes, join_mm), join_mm)
+        usual_mm = JOIN_SHARE * settings.tolerance_mm
+        if settings.join_mm is None:
+            joined = join_strokes(strokes, usual_mm)
+            gaps = Gaps(strokes) if len(joined) < len(strokes) else None
+            strokes = with_loops(joined, NARROW_SHARE * settings.tolerance_mm)
+        else:
+            joined = with_loops(join_strokes(strokes, settings.join_mm), settings.join_mm)
+            more = len(join_strokes(strokes, usual_mm)) - len(joined)
+            if settings.join_mm > usual_mm and more > 0:
+                warnings.append(
+                    f"gaps of up to {settings.join_mm:g} mm drawn across as asked, which saves"
+                    f" {counted(more, 'pen lift')}; {usual_mm:g} mm is within the tolerance"
+                )
+            strokes = joined
     if settings.simplify_mm:
         strokes = simplified(strokes, settings.simplify_mm)
     if settings.min_length_mm:
         strokes, short = longer(strokes, settings.min_length_mm)
         if short:
             warnings.append(f"shorter than {settings.min_length_mm:g} mm and left out: {counted(len(short), 'stroke')}")
-    return strokes, short, warnings
+    return strokes, gaps, short, warnings
 
 
 def _within_reach(
@@ -220,6 +252,17 @@ def _in_reach(branches: Sequence[ConfigurationMap]) -> Callable[[FloatArray], Bo
         return reached
 
     return reachable
+
+
+def _left_open(
+    context: PlanContext, gaps: Gaps, strokes: Sequence[FloatArray], timed: Sequence[TimedStroke]
+) -> list[list[FloatArray]]:
+    """The parts of each stroke between gaps that its motion does not cross within the tolerance."""
+    kinematics, tolerance_mm = context.model.kinematics, context.settings.tolerance_mm
+    return [
+        left_open(kinematics, gaps, stroke, motion.joints, tolerance_mm)
+        for stroke, motion in zip(strokes, timed, strict=True)
+    ]
 
 
 def _timed_strokes(

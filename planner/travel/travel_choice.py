@@ -79,8 +79,8 @@ def rest_of(slopes: Slopes, limits: Limits, share: FloatArray) -> Limits:
 class Candidates:
     """Ways to make each travel move, all (n_travel_moves, n_candidates): the share of the limits that the height has
     above the handover, the height of the handover, those that the rise and the fall (backwards, as a rise) aim at, in
-    mm, and the speeds in mm/s that the fall keeps below, and all of the way down. seconds: what the formulas make of it, inf where there is no
-    such way."""
+    mm, and the speeds in mm/s that the fall keeps below, and all of the way down. seconds: what the formulas make of
+    it, inf where there is no such way."""
 
     share: FloatArray
     handover_mm: FloatArray

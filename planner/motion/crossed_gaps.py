@@ -1,0 +1,102 @@
+"""Gaps that the pen crosses on the paper, where strokes were joined: whether it stays within the tolerance there.
+
+The middle of a gap is as far from the drawing as half the gap. What the pen strays there adds to that, so gaps of
+nearly twice the tolerance are crossed where it hardly strays, and else left open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from planner.arrays import FloatArray, IntArray
+from planner.kinematics.chain import Kinematics
+from planner.motion.between_samples import tips_between
+from planner.motion.tolerance import JOIN_SHARE, NARROW_SHARE
+
+_FINE = np.arange(4) / 4
+"""Fractions of the way between points of the tip's curve: a fast pen crosses a gap in less than a step."""
+_NEAR = 8.0
+"""How much of a stroke on both sides of a gap is looked at, in tolerances."""
+
+
+class Gaps:
+    """The gaps that may be crossed between the ends of strokes (n, 2)."""
+
+    def __init__(self, strokes: Sequence[FloatArray]) -> None:
+        lines = [stroke for stroke in strokes if len(stroke) > 1]
+        self._ends = {end.tobytes() for stroke in lines for end in stroke[[0, -1]]}
+        self._lines = {way.tobytes() for stroke in lines if len(stroke) == 2 for way in (stroke, stroke[::-1])}
+
+    def crossed_by(self, stroke: FloatArray, least_mm: float, most_mm: float) -> IntArray:
+        """The points of a stroke (n, 2) after which it crosses a gap of such a width."""
+        width = np.hypot(*np.diff(stroke, axis=0).T)
+        return np.array(
+            [
+                index
+                for index in np.flatnonzero((width > least_mm) & (width <= most_mm * (1.0 + 1e-9))).tolist()
+                if stroke[index].tobytes() in self._ends
+                and stroke[index + 1].tobytes() in self._ends
+                and np.ascontiguousarray(stroke[index : index + 2]).tobytes() not in self._lines
+            ],
+            dtype=np.int64,
+        )
+
+
+def left_open(
+    kinematics: Kinematics, gaps: Gaps, stroke: FloatArray, samples: FloatArray, tolerance_mm: float
+) -> list[FloatArray]:
+    """The parts of a stroke (n, 2) between gaps that its samples (n, n_joints) do not cross within the tolerance of
+    what is drawn on both sides; the stroke alone where they cross all."""
+    crossed = gaps.crossed_by(stroke, NARROW_SHARE * tolerance_mm, JOIN_SHARE * tolerance_mm)
+    if not len(crossed):
+        return [stroke]
+    tips = _dense_tips(kinematics, samples)
+    open_ = [index for index in crossed.tolist() if _strays(stroke, index, tips, tolerance_mm)]
+    cuts = [index + 1 for index, before in zip(open_, [-1, *open_], strict=False) if index - before > 1]
+    if cuts and len(stroke) - cuts[-1] < 2:
+        cuts.pop()
+    return np.split(stroke, cuts)
+
+
+def _dense_tips(kinematics: Kinematics, samples: FloatArray) -> FloatArray:
+    """(n, 2) at and between the samples (n, n_joints), by both ways in which controllers join them."""
+    at = kinematics.tip_mm(kinematics.independent_of(samples))[:, None, :2]
+    between = tips_between(kinematics, [samples])[0][..., :2]
+    curves = [np.concatenate((at[:-1], way), axis=1).reshape(-1, 2) for way in np.split(between, 2, axis=1)]
+    dense = [
+        (curve[:-1, None] + _FINE[:, None] * np.diff(curve, axis=0)[:, None]).reshape(-1, 2)
+        for curve in (np.concatenate((curve, at[-1])) for curve in curves)
+    ]
+    return np.concatenate((*dense, at[-1]))
+
+
+def _strays(stroke: FloatArray, index: int, tips: FloatArray, tolerance_mm: float) -> bool:
+    """Whether a tip about the gap after a point is off the stroke before and after it, and all the rest of it."""
+    one, other = stroke[index], stroke[index + 1]
+    across = tips[np.hypot(*(tips - 0.5 * (one + other)).T) <= 0.5 * np.hypot(*(other - one)) + tolerance_mm]
+    sides = [_near_end(side, _NEAR * tolerance_mm) for side in (stroke[: index + 1][::-1], stroke[index + 1 :])]
+    across = across[np.min([_distance(across, side) for side in sides], axis=0) > tolerance_mm]
+    if not len(across):
+        return False
+    whole = [_distance(across, side) for side in (stroke[: index + 1], stroke[index + 1 :])]
+    return bool((np.min(whole, axis=0) > tolerance_mm).any())
+
+
+def _near_end(line: FloatArray, length_mm: float) -> FloatArray:
+    """The first so many mm of a line."""
+    arc = np.cumsum(np.hypot(*np.diff(line, axis=0).T))
+    return line[: int(np.searchsorted(arc, length_mm)) + 2]
+
+
+def _distance(points: FloatArray, line: FloatArray) -> FloatArray:
+    """(n,) from points (n, 2) to a polyline (m, 2)."""
+    start, along = line[:-1], np.diff(line, axis=0)
+    if not len(along):
+        alone: FloatArray = np.hypot(*(points - line[0]).T)
+        return alone
+    offset = points[:, None] - start
+    share = np.clip((offset * along).sum(axis=2) / np.maximum((along * along).sum(axis=1), 1e-18), 0.0, 1.0)
+    nearest: FloatArray = np.linalg.norm(offset - share[..., None] * along, axis=2).min(axis=1)
+    return nearest
