@@ -15,7 +15,7 @@ from planner.kinematics.chain import Kinematics
 from planner.motion.between_samples import tips_between
 from planner.motion.tolerance import JOIN_SHARE, NARROW_SHARE
 
-_FINE = np.arange(4) / 4
+_FINE = np.arange(16) / 16
 """Fractions of the way between points of the tip's curve: a fast pen crosses a gap in less than a step."""
 _NEAR = 8.0
 """How much of a stroke on both sides of a gap is looked at, in tolerances."""
@@ -52,30 +52,33 @@ def left_open(
     crossed = gaps.crossed_by(stroke, NARROW_SHARE * tolerance_mm, JOIN_SHARE * tolerance_mm)
     if not len(crossed):
         return [stroke]
-    tips = _dense_tips(kinematics, samples)
-    open_ = [index for index in crossed.tolist() if _strays(stroke, index, tips, tolerance_mm)]
+    steps = _steps_of_tips(kinematics, samples)
+    open_ = [index for index in crossed.tolist() if _strays(stroke, index, steps, tolerance_mm)]
     cuts = [index + 1 for index, before in zip(open_, [-1, *open_], strict=False) if index - before > 1]
     if cuts and len(stroke) - cuts[-1] < 2:
         cuts.pop()
     return np.split(stroke, cuts)
 
 
-def _dense_tips(kinematics: Kinematics, samples: FloatArray) -> FloatArray:
-    """(n, 2) at and between the samples (n, n_joints), by both ways in which controllers join them."""
-    at = kinematics.tip_mm(kinematics.independent_of(samples))[:, None, :2]
+def _steps_of_tips(kinematics: Kinematics, samples: FloatArray) -> FloatArray:
+    """(n, 2, 2) short straight ways of the tip, at and between the samples (n, n_joints), by both ways in which
+    controllers join them."""
+    at = kinematics.tip_mm(kinematics.independent_of(samples))[:, :2]
     between = tips_between(kinematics, [samples])[0][..., :2]
-    curves = [np.concatenate((at[:-1], way), axis=1).reshape(-1, 2) for way in np.split(between, 2, axis=1)]
-    dense = [
-        (curve[:-1, None] + _FINE[:, None] * np.diff(curve, axis=0)[:, None]).reshape(-1, 2)
-        for curve in (np.concatenate((curve, at[-1])) for curve in curves)
+    curves = [
+        np.concatenate((np.concatenate((at[:-1, None], way), axis=1).reshape(-1, 2), at[-1:]))
+        for way in np.split(between, 2, axis=1)
     ]
-    return np.concatenate((*dense, at[-1]))
+    return np.concatenate([np.stack((curve[:-1], curve[1:]), axis=1) for curve in curves])
 
 
-def _strays(stroke: FloatArray, index: int, tips: FloatArray, tolerance_mm: float) -> bool:
+def _strays(stroke: FloatArray, index: int, steps: FloatArray, tolerance_mm: float) -> bool:
     """Whether a tip about the gap after a point is off the stroke before and after it, and all the rest of it."""
     one, other = stroke[index], stroke[index + 1]
-    across = tips[np.hypot(*(tips - 0.5 * (one + other)).T) <= 0.5 * np.hypot(*(other - one)) + tolerance_mm]
+    reach_mm = 0.5 * np.hypot(*(other - one)) + tolerance_mm
+    lengths_mm = np.hypot(*(steps[:, 1] - steps[:, 0]).T)
+    about = steps[np.hypot(*(steps[:, 0] - 0.5 * (one + other)).T) <= reach_mm + lengths_mm]
+    across = (about[:, :1] + _FINE[:, None] * (about[:, 1:] - about[:, :1])).reshape(-1, 2)
     sides = [_near_end(side, _NEAR * tolerance_mm) for side in (stroke[: index + 1][::-1], stroke[index + 1 :])]
     across = across[np.min([_distance(across, side) for side in sides], axis=0) > tolerance_mm]
     if not len(across):

@@ -1,0 +1,112 @@
+"""Gaps between strokes that are drawn across: only where nobody who holds the pen path against the drawing can tell."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from planner.arrays import FloatArray
+from planner.checking.check import check_trajectory
+from planner.drawing.svg import read_drawing
+from planner.kinematics.projection import project
+from planner.motion.crossed_gaps import Gaps, left_open
+from planner.pipeline import Plan, plan
+from planner.progress import unreported
+from planner.settings import PlanSettings
+from tests.arms.chains import kinematics_of, load_once, model_of
+from tests.drawn_shapes import lines_svg
+
+TOLERANCE_MM = 0.05
+
+
+def chains(rng: np.random.Generator, count: int) -> str:
+    """Three short lines in turn, each in a direction of its own, with gaps of any width that may be crossed."""
+    paths = []
+    for index in range(count):
+        place = np.array([8.0 + 12.0 * (index % 4), 8.0 + 12.0 * (index // 4)])
+        for _ in range(3):
+            heading, across = rng.uniform(0.0, 2 * np.pi, 2)
+            end = place + 3.0 * np.array([np.cos(heading), np.sin(heading)])
+            paths.append(f'<path d="M {place[0]:.5f} {place[1]:.5f} L {end[0]:.5f} {end[1]:.5f}"/>')
+            place = end + rng.uniform(0.02, 0.0995) * np.array([np.cos(across), np.sin(across)])
+    return f'<g fill="none" stroke="#000">{"".join(paths)}</g>'
+
+
+def drawn(folder: Path, body: str, **options: float) -> Plan:
+    file = folder / "gaps.svg"
+    file.write_text(lines_svg(body, 'width="60mm" height="60mm" viewBox="0 0 60 60"'), encoding="utf-8")
+    made = plan(file, PlanSettings(scale=1.0, **options), unreported)  # type: ignore[arg-type]
+    verdict = check_trajectory(made.trajectory, load_once("drawing_arm"), read_drawing(file))
+    assert verdict.passed, str(verdict)
+    return made
+
+
+@settings(deadline=None, max_examples=4, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(seed=st.integers(0, 10**6), rate_hz=st.sampled_from([50.0, 100.0, 250.0]))
+def test_what_is_joined_unasked_is_within_the_tolerance_of_the_drawing(
+    tmp_path: Path, seed: int, rate_hz: float
+) -> None:
+    made = drawn(tmp_path, chains(np.random.default_rng(seed), 12), rate_hz=rate_hz)
+    assert made.trajectory.path_work.join_mm is None  # the check knows of no joins
+    assert made.summary.n_strokes < 1.5 * 12
+
+
+def test_lines_in_line_are_one_stroke_over_a_gap_of_nearly_twice_the_tolerance(tmp_path: Path) -> None:
+    for gap, n_strokes in ((0.095, 1), (0.105, 2)):
+        body = f'<path d="M 5 5 H 20 M {20 + gap} 5 H 40" fill="none" stroke="#000"/>'
+        made = drawn(tmp_path, body)
+        assert made.summary.n_strokes == n_strokes and not made.summary.warnings
+
+
+def test_wider_gaps_are_crossed_on_request_and_that_is_said(tmp_path: Path) -> None:
+    body = '<path d="M 5 5 H 20 M 20.2 5 H 40" fill="none" stroke="#000"/>'
+    made = drawn(tmp_path, body, join_mm=0.25)
+    assert made.summary.n_strokes == 1 and made.trajectory.path_work.join_mm == 0.25
+    assert any("0.25 mm drawn across as asked, which saves 1 pen lift" in note for note in made.summary.warnings)
+
+
+def test_a_stroke_is_cut_at_the_gap_that_its_motion_misses_and_nowhere_else() -> None:
+    kinematics = kinematics_of(load_once("drawing_arm"))
+    lines = [
+        np.array([[70.0, 0.0], [80.0, 0.0]]),
+        np.array([[80.09, 0.0], [80.09, 10.0]]),
+        np.array([[80.09, 10.05], [90.0, 10.0]]),
+    ]
+    stroke = np.concatenate(lines)
+    gaps = Gaps(lines)
+    np.testing.assert_array_equal(gaps.crossed_by(stroke, 0.02, 0.1), [1, 3])
+    np.testing.assert_array_equal(gaps.crossed_by(stroke[::-1], 0.06, 0.1), [3])
+
+    def samples(aside_mm: float) -> FloatArray:
+        places = np.concatenate([np.linspace(*ends, 40) for ends in pairwise(stroke)])
+        near = np.hypot(*(places - (80.045, 0.0)).T) < 0.04
+        tips = np.column_stack((places - near[:, None] * (0.0, aside_mm), np.zeros(len(places))))
+        start = model_of(kinematics.arm).configuration_map().configurations_at(tips)[0]
+        return kinematics.arm.complete(project(kinematics, start, tips)[0])
+
+    assert len(left_open(kinematics, gaps, stroke, samples(0.0), TOLERANCE_MM)) == 1
+    parts = left_open(kinematics, gaps, stroke, samples(0.04), TOLERANCE_MM)
+    assert [part.tolist() for part in parts] == [lines[0].tolist(), np.concatenate(lines[1:]).tolist()]
+
+
+def test_a_short_line_between_two_ends_is_no_gap() -> None:
+    lines = [
+        np.array([[0.0, 0.0], [1.0, 0.0]]),
+        np.array([[1.0, 0.0], [1.08, 0.0]]),
+        np.array([[1.08, 0.0], [2.0, 0.0]]),
+    ]
+    stroke = np.array([[0.0, 0.0], [1.0, 0.0], [1.08, 0.0], [2.0, 0.0]])
+    assert len(Gaps(lines).crossed_by(stroke, 0.02, 0.1)) == 0
+
+
+@pytest.mark.parametrize("tolerance_mm", [0.02, 0.2])
+def test_the_gap_follows_the_tolerance(tmp_path: Path, tolerance_mm: float) -> None:
+    body = f'<path d="M 5 5 H 20 M {20 + 1.9 * tolerance_mm} 5 H 40" fill="none" stroke="#000"/>'
+    file = tmp_path / "gap.svg"
+    file.write_text(lines_svg(body, 'width="60mm" height="60mm" viewBox="0 0 60 60"'), encoding="utf-8")
+    assert plan(file, PlanSettings(scale=1.0, tolerance_mm=tolerance_mm), unreported).summary.n_strokes == 1
