@@ -66,7 +66,7 @@ class Chosen:
 
 @dataclass(frozen=True, slots=True)
 class PathWork:
-    """join_mm: ends that are nearer are joined; None: only those that the tolerance takes for one. dedup_mm: of lines
+    """join_mm: ends that are nearer are joined; None: only where that is within the tolerance. dedup_mm: of lines
     that are nearer, one is drawn; 0: all are. simplify_mm: points are dropped that change a line by less. passes: how
     often each line is drawn."""
 

@@ -131,7 +131,7 @@ class PlanSettings:
         mirror: Left and right change places before it is turned.
         margin_mm: Kept free along the edges of the canvas or the paper.
         rotate_deg: How far the drawing is turned before it is placed.
-        join_mm: Ends that are nearer are joined; None: those that the tolerance takes for one.
+        join_mm: Ends that are nearer are joined; None: those within twice the tolerance, where the pen stays within it.
         dedup_mm: Of lines that are nearer, one is drawn; 0: all are.
         simplify_mm: Points are dropped that change a line by less.
         min_length_mm: Shorter strokes are left out.

@@ -17,6 +17,7 @@ from planner.drawing.svg import read_drawing
 from planner.errors import PlanError
 from planner.execution.context import PlanContext
 from planner.execution.workers import ALONE, Workers, executor_of
+from planner.motion.crossed_gaps import Gaps
 from planner.pen_drawing import PenDrawing, lift_mm
 from planner.pipeline import Plan, canvas_for, planned, taken, told_of, worth_hiring
 from planner.placement.board import Board
@@ -128,6 +129,7 @@ def _by_sheet(tiling: Tiling, pens: Sequence[PenDrawing]) -> list[tuple[Tile, li
     """The sheets with ink, row by row, and what each pen draws of it; the first of them draws the marks."""
     strokes = [tiling.cut(pen.strokes) for pen in pens]
     dropped = [tiling.cut(pen.dropped) for pen in pens]
+    gaps = [None if pen.gaps is None else tiling.cut(pen.gaps.strokes) for pen in pens]
     cells = sorted({cell for cut in strokes for cell in cut}, key=lambda cell: (cell[1], cell[0]))
     if not cells:
         raise PlanError("nothing of the drawing is left to draw")
@@ -135,8 +137,14 @@ def _by_sheet(tiling: Tiling, pens: Sequence[PenDrawing]) -> list[tuple[Tile, li
     for cell in cells:
         tile = tiling.tile(*cell)
         drawings = [
-            PenDrawing(pen.group, pen.context, own.get(cell, []), dropped=less.get(cell, []))
-            for pen, own, less in zip(pens, strokes, dropped, strict=True)
+            PenDrawing(
+                pen.group,
+                pen.context,
+                own.get(cell, []),
+                dropped=less.get(cell, []),
+                gaps=None if apart is None else Gaps(apart.get(cell, [])),
+            )
+            for pen, own, less, apart in zip(pens, strokes, dropped, gaps, strict=True)
         ]
         first = next(drawing for drawing in drawings if drawing.strokes)
         first.strokes = [*tile.mark_lines(), *first.strokes]

@@ -49,7 +49,10 @@ def add_path_options(lines: argparse._ArgumentGroup) -> None:
     """The options that say what is done to lines before they are drawn."""
     default = PlanSettings()
     lines.add_argument(
-        "--join", type=length_mm(zero=True), metavar="LENGTH", help="join ends that are nearer (default: that touch)"
+        "--join",
+        type=length_mm(zero=True),
+        metavar="LENGTH",
+        help="join ends that are nearer (default: twice the tolerance)",
     )
     lines.add_argument(
         "--dedup",

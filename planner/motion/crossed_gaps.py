@@ -22,10 +22,10 @@ _NEAR = 8.0
 
 
 class Gaps:
-    """The gaps that may be crossed between the ends of strokes (n, 2)."""
+    """The gaps that may be crossed between the ends of strokes (n, 2), as these were before they were joined."""
 
     def __init__(self, strokes: Sequence[FloatArray]) -> None:
-        lines = [stroke for stroke in strokes if len(stroke) > 1]
+        self.strokes = lines = [stroke for stroke in strokes if len(stroke) > 1]
         self._ends = {end.tobytes() for stroke in lines for end in stroke[[0, -1]]}
         self._lines = {way.tobytes() for stroke in lines if len(stroke) == 2 for way in (stroke, stroke[::-1])}
 

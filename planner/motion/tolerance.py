@@ -1,7 +1,8 @@
 """The tolerance budget: what each station from the drawing to the samples may spend of the tolerance.
 
-It is spent once: chords in the place of curves take a little, and all the rest is for what the pen makes of the strokes, measured as one deviation, both ways: rounded corners, straight lines or cubics between
-samples, and that the joints move straight rather than the tip.
+It is spent once: chords in the place of curves take a little, and all the rest is for what the pen makes of the
+strokes, measured as one deviation, both ways: rounded corners, straight lines or cubics between samples, and that the
+joints move straight rather than the tip.
 """
 
 from __future__ import annotations

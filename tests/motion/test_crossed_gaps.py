@@ -110,3 +110,11 @@ def test_the_gap_follows_the_tolerance(tmp_path: Path, tolerance_mm: float) -> N
     file = tmp_path / "gap.svg"
     file.write_text(lines_svg(body, 'width="60mm" height="60mm" viewBox="0 0 60 60"'), encoding="utf-8")
     assert plan(file, PlanSettings(scale=1.0, tolerance_mm=tolerance_mm), unreported).summary.n_strokes == 1
+
+
+def test_sheets_know_the_gaps_of_the_whole() -> None:
+    """What a sheet holds is moved there with its gaps, to the last bit."""
+    lines = [np.array([[70.0, 0.1], [80.3, 0.2]]), np.array([[80.39, 0.2], [90.7, 10.1]])]
+    stroke, moved = np.concatenate(lines), np.array([0.1, 1 / 3])
+    there = Gaps([line + moved for line in Gaps(lines).strokes])
+    assert there.crossed_by(stroke + moved, 0.02, 0.1).tolist() == [1]
