@@ -20,7 +20,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks.targets import configurations, copp_socp, far, redundancy, scale, smooth, speed, whole
+from benchmarks.targets import axidraw, configurations, copp_socp, far, redundancy, scale, smooth, speed, whole
 from benchmarks.targets.row import Row, markdown
 from benchmarks.targets.strokes import drawings
 from planner.arms.arm_file import load_arm
@@ -35,11 +35,12 @@ MEASURES: dict[str, Measure] = {
     "toppra": lambda folder, _, settings: smooth.against_toppra(folder, settings),
     "optimum": lambda folder, _, settings: smooth.against_optimum(folder, settings),
     "copp": lambda _, __, settings: copp_socp.against_copp(settings),
-    "stopping": lambda folder, _, settings: whole.limits_and_stopping(folder, settings),
+    "ink": lambda folder, _, settings: whole.limits_and_ink(folder, settings),
     "dls": lambda _, drawing, settings: configurations.against_dls(drawing, settings),
     "redundancy": lambda _, drawing, settings: redundancy.against_brute_force(drawing, settings),
     "limits": lambda _, drawing, settings: configurations.limits_of_narrow_arms(drawing, settings),
-    "phases": lambda folder, _, settings: whole.phases_and_order(folder, settings),
+    "phases": lambda folder, _, settings: whole.phases(folder, settings),
+    "axidraw": lambda folder, _, settings: axidraw.against_axidraw(folder, settings),
     "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),
     "configurations": lambda _, drawing, settings: speed.configurations(drawing, settings),
     "far": lambda _, __, ___: far.far_targets(),
