@@ -79,12 +79,13 @@ def without_doubles(strokes: Sequence[FloatArray], within_mm: float) -> tuple[li
 @dataclass(frozen=True, eq=False, slots=True)
 class _Dense:
     """Points evenly spaced along all strokes. first: where each stroke's begin, and the end of all. along_mm: arc
-    length in its stroke. direction: unit vectors, zero for taps."""
+    length in its stroke. direction: unit vectors, zero for taps. spacing_mm: between neighbours, at most."""
 
     points_mm: FloatArray
     first: IntArray
     along_mm: FloatArray
     direction: FloatArray
+    spacing_mm: float
 
     @staticmethod
     def of(strokes: Sequence[FloatArray], spacing_mm: float) -> _Dense:
@@ -103,7 +104,7 @@ class _Dense:
             directions.append(heading / np.where(norm > 0.0, norm, 1.0))
             counts.append(len(along))
         first = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
-        return _Dense(np.concatenate(points), first, np.concatenate(alongs), np.concatenate(directions))
+        return _Dense(np.concatenate(points), first, np.concatenate(alongs), np.concatenate(directions), spacing_mm)
 
 
 def _doubled(dense: _Dense, within_mm: float) -> BoolArray:
@@ -115,14 +116,18 @@ def _doubled(dense: _Dense, within_mm: float) -> BoolArray:
     is_double = np.zeros(len(dense.points_mm), dtype=np.bool_)
     for begin in range(0, len(is_double), _AT_ONCE):
         block = np.arange(begin, min(begin + _AT_ONCE, len(is_double)))
-        near = [np.array(found, dtype=np.int64) for found in tree.query_ball_point(dense.points_mm[block], within_mm)]
+        reached = tree.query_ball_point(dense.points_mm[block], float(np.hypot(within_mm, 0.5 * dense.spacing_mm)))
+        near = [np.array(found, dtype=np.int64) for found in reached]
         point = np.repeat(block, [len(found) for found in near])
         other = np.concatenate(near)
         same = owner[point] == owner[other]
         apart = np.abs(dense.along_mm[point] - dense.along_mm[other]) > 2.0 * _FEWEST * within_mm
         parallel = np.abs((dense.direction[point] * dense.direction[other]).sum(axis=1)) >= _PARALLEL
         both_taps = ~dense.direction[point].any(axis=1) & ~dense.direction[other].any(axis=1)
-        is_earlier = (other < point) & (~same | apart) & (parallel | both_taps)
+        # Between two points the other line is nearer than to either of them: what counts is how far it passes by.
+        gone = dense.points_mm[point] - dense.points_mm[other]
+        gone_by = np.hypot(*(gone - (gone * dense.direction[other]).sum(axis=1)[:, None] * dense.direction[other]).T)
+        is_earlier = (other < point) & (~same | apart) & (parallel | both_taps) & (gone_by <= within_mm)
         for at, before in zip(point[is_earlier].tolist(), other[is_earlier].tolist(), strict=True):
             if not is_double[before]:
                 is_double[at] = True

@@ -69,3 +69,22 @@ def test_short_strokes_are_told_from_taps() -> None:
     tap, short, line = np.zeros((1, 2)), np.array([[0.0, 0.0], [0.3, 0.4]]), np.array([[0.0, 0.0], [3.0, 4.0]])
     kept, lost = longer([tap, short, line], 0.6)
     assert [len(one) for one in kept] == [1, 2] and lost[0] is short
+
+
+@given(
+    shift=st.floats(0.0, 0.95),
+    angle=st.floats(0.0, 2 * np.pi),
+    length_mm=st.floats(5.0, 60.0),
+    within_mm=st.sampled_from([0.05, 0.2]),
+    late=st.floats(0.0, 2.0),
+    backwards=st.booleans(),
+)
+def test_a_line_beside_another_within_what_was_asked_is_drawn_once(
+    shift: float, angle: float, length_mm: float, within_mm: float, late: float, backwards: bool
+) -> None:
+    along = np.array([np.cos(angle), np.sin(angle)])
+    line = np.array([[0.0], [1.0]]) * length_mm * along
+    other = line + shift * within_mm * np.array([-along[1], along[0]])
+    other[0] += late * within_mm * along  # its points lie between those of the first
+    kept, dropped_mm = without_doubles([line, other[::-1] if backwards else other], within_mm)
+    assert len(kept) == 1 and dropped_mm == pytest.approx(length([other]))
