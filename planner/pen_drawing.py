@@ -191,19 +191,20 @@ def _strokes(
             warnings.append(f"drawn once, though the drawing has it more than once: {doubled_mm:.1f} mm of line")
     if not (settings.keep_order or settings.reverse):
         usual_mm = JOIN_SHARE * settings.tolerance_mm
+        join_mm = usual_mm if settings.join_mm is None else settings.join_mm
         if settings.join_mm is None:
             joined = join_strokes(strokes, usual_mm)
             gaps = Gaps(strokes) if len(joined) < len(strokes) else None
-            strokes = with_loops(joined, NARROW_SHARE * settings.tolerance_mm)
         else:
-            joined = with_loops(join_strokes(strokes, settings.join_mm), settings.join_mm)
+            joined = join_strokes(strokes, settings.join_mm)
             more = len(join_strokes(strokes, usual_mm)) - len(joined)
             if settings.join_mm > usual_mm and more > 0:
                 warnings.append(
                     f"gaps of up to {settings.join_mm:g} mm drawn across as asked, which saves"
                     f" {counted(more, 'pen lift')}; {usual_mm:g} mm is within the tolerance"
                 )
-            strokes = joined
+        # Where a line is touched in its middle the header tells of no gap: so it has to be within the tolerance.
+        strokes = with_loops(joined, min(NARROW_SHARE * settings.tolerance_mm, join_mm))
     if settings.simplify_mm:
         strokes = simplified(strokes, settings.simplify_mm)
     if settings.min_length_mm:
