@@ -29,9 +29,9 @@ examples:
   plan identify --arm my_arm.toml -o test.csv
   plan run test.csv --beyond-limits --driver feetech --port /dev/ttyACM0 --record told.csv --record-positions at.csv
   plan identify my_arm.toml --record told.csv --positions at.csv -o my_arm_2.toml
-  plan identify my_arm.toml --verdicts "q1=14,q2=20/17" -o my_arm_2.toml   the last steps of jerk and of
-                                                             acceleration that looked right; one number is both
+  plan identify my_arm.toml --verdicts "q1=14,q2=20/17" -o my_arm_2.toml
 
+Verdicts are the last steps of jerk and of acceleration that looked right; one number is both.
 --factor and --rate have to be the same both times."""
 
 
