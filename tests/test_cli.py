@@ -29,7 +29,7 @@ from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach
 from planner.execution.workers import Workers
 from planner.paper_size import Orientation, paper_size
 from planner.pens import GroupBy, Pen
-from planner.settings import Anchor, CanvasKind, ConfigurationWeights, Method, PlaceKind, PlanSettings
+from planner.settings import Anchor, CanvasKind, ConfigurationWeights, Method, PlaceKind, PlanSettings, Timing
 from planner.summary import PlanSummary
 from planner.trajectory import Trajectory, read_trajectory, write_trajectory
 from tests.drawn_shapes import lines_svg
@@ -157,6 +157,8 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
                 "drawing_arm_2022",
                 "--method",
                 "closed-form",
+                "--timing",
+                "ruckig",
                 "--rate",
                 "50",
                 "--tolerance",
@@ -241,6 +243,7 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
     wanted = PlanSettings(
         arm="drawing_arm_2022",
         method=Method.CLOSED_FORM,
+        timing=Timing.RUCKIG,
         rate_hz=50,
         tolerance_mm=0.1,
         speed_mm_s=40,

@@ -383,7 +383,7 @@ async function start() {
   for (const job of state.jobs) jobs.set(job.id, job);
   run = state.run;
   jogChanged(state.jog);
-  await choose(jobs.has(current) ? current : jobs.has(run.job) ? run.job : [...jobs.keys()].at(-1) ?? null);
+  await choose(jobs.has(current) ? current : jobs.has(run.job) && run.stand !== "idle" ? run.job : [...jobs.keys()].at(-1) ?? null);
   runChanged(run); // by now the film is there
 }
 

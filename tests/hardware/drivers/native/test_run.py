@@ -34,7 +34,7 @@ _DRAWING = lines_svg(
 <path d="M58 28 L70 4 L82 28"/><path d="M64 20h12"/>""",
     'viewBox="0 0 90 30"',
 )
-_WORST_MM = 0.15
+_WORST_MM = 0.18
 """A pulse is right to half a step of 0.5 us: 0.025 degrees of each of the joints, which can add up to this."""
 _MEETING_MM = 5.0
 """Of lines that meet and cross, and of where an interrupted one is gone on with."""
