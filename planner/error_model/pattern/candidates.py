@@ -107,8 +107,9 @@ def _at(places_mm: FloatArray, height_mm: float) -> FloatArray:
 
 def _kept(kinematics: Kinematics, free: FloatArray) -> BoolArray:
     """(n,) whether limits are kept with room to spare, and links apart from each other and above the paper, or at least
-    the tip where that is pressed into it."""
+    no deeper than the tip where that is pressed into it."""
     arm = kinematics.arm
     kept = within_limits(arm, arm.complete(free), slack=-LIMIT_MARGIN * float((arm.maximum - arm.minimum).min()))
     kept &= kinematics.clearance.least_mm(free)[0] >= KEPT_MM
-    return kept & (kinematics.clearance.lowest_mm(free) >= -_ROUNDING_MM)
+    floor_mm = np.minimum(kinematics.tip_mm(free)[:, 2], 0.0) - _ROUNDING_MM
+    return kept & (kinematics.clearance.lowest_mm(free) >= floor_mm)

@@ -116,7 +116,7 @@ def test_what_the_pins_drew_is_the_drawing(
     assert "the arm is parked" in said
     drawn = ink(emulator, _ARM)
     assert len(drawn) == _STROKES
-    assert drawing_error(drawn, wanted).most_mm < 0.1
+    assert drawing_error(drawn, wanted).most_mm < 0.13  # a tolerance, and half steps of all joints
     assert drawing_error(drawn, wanted).largest_mm < _WORST_MM
     assert _entries(csv) | {"next_stroke": _STROKES, "ended": "complete"} == _entries(csv)
 
