@@ -35,9 +35,8 @@ def extension_folder() -> Path:
         else:
             if lines := done.stdout.split("\n"):
                 return Path(lines[0]) / "extensions"
-    if sys.platform == "darwin":
-        return Path.home() / _MACOS / "extensions"
-    return platformdirs.user_config_path("inkscape", appauthor=False, roaming=True) / "extensions"
+    elsewhere = platformdirs.user_config_path("inkscape", appauthor=False, roaming=True)
+    return (Path.home() / _MACOS if sys.platform == "darwin" else elsewhere) / "extensions"
 
 
 def install(folder: Path) -> list[Path]:
