@@ -29,9 +29,9 @@ def planned(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @contextmanager
-def running(trajectory: Path, *options: str) -> Iterator[subprocess.Popen[str]]:
+def driven(command: str, *options: str) -> Iterator[subprocess.Popen[str]]:
     with subprocess.Popen(
-        [sys.executable, "-m", "planner", "run", str(trajectory), "--events", *options],
+        [sys.executable, "-m", "planner", command, "--events", *options],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -75,7 +75,7 @@ def test_events_and_a_result_do_not_share_standard_output(planned: Path, capsys:
 
 
 def test_a_program_pauses_a_run_lets_it_go_on_and_stops_it(planned: Path) -> None:
-    with running(planned) as process:
+    with driven("run", str(planned)) as process:
         events = events_of(process)
         assert next(events) == {"event": "connected", "strokes": 2}
         seen = [next(events)]
@@ -96,7 +96,7 @@ def test_a_program_pauses_a_run_lets_it_go_on_and_stops_it(planned: Path) -> Non
 
 
 def test_a_run_stops_and_parks_when_the_program_that_drives_it_is_gone(planned: Path) -> None:
-    with running(planned) as process:
+    with driven("run", str(planned)) as process:
         events = events_of(process)
         next(events)
         assert process.stdin is not None
@@ -111,7 +111,7 @@ def test_a_program_is_asked_for_pens_and_answers(tmp_path: Path) -> None:
     drawing.write_text(lines_svg('<path d="M10 10 H30" stroke="blue"/><path d="M10 20 H30" stroke="red"/>', PAGE))
     trajectory = tmp_path / "two.csv"
     assert main([str(drawing), "-o", str(trajectory), "--by", "colour", "--quiet"]) == 0
-    with running(trajectory) as process:
+    with driven("run", str(trajectory)) as process:
         asked = []
         for event in events_of(process):
             if event["event"] == "insert":
@@ -122,24 +122,9 @@ def test_a_program_is_asked_for_pens_and_answers(tmp_path: Path) -> None:
     assert event["event"] == "ended" and event["complete"]
 
 
-@contextmanager
-def jogging(*options: str) -> Iterator[subprocess.Popen[str]]:
-    with subprocess.Popen(
-        [sys.executable, "-m", "planner", "jog", "--events", *options],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as process:
-        try:
-            yield process
-        finally:
-            process.kill()
-
-
 def test_an_arm_is_jogged_by_a_program_that_is_told_what_came_of_it(tmp_path: Path) -> None:
     target = tmp_path / "mine.toml"
-    with jogging("--arm", "drawing_arm_2022", "-o", str(target)) as process:
+    with driven("jog", "--arm", "drawing_arm_2022", "-o", str(target)) as process:
         told = events_of(process)
         first = next(told)
         assert first["event"] == "stands" and first["saved"] and not first["pen_is_up"]
@@ -160,7 +145,7 @@ def test_an_arm_is_jogged_by_a_program_that_is_told_what_came_of_it(tmp_path: Pa
 
 
 def test_stop_overtakes_the_commands_before_it() -> None:
-    with jogging("--arm", "drawing_arm") as process:
+    with driven("jog", "--arm", "drawing_arm") as process:
         told = events_of(process)
         next(told)
         press(process, "move 1\n" * 2000 + "move -1\n" * 2000 + "stop\n")

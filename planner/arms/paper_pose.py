@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, sin
 
 import numpy as np
 
+from planner.arms.rigid_transform import RigidTransform
 from planner.arrays import FloatArray
 
 
@@ -33,17 +33,8 @@ class PaperPose:
     @property
     def T_base_paper(self) -> FloatArray:
         """(4, 4), mm."""
-        (ca, sa), (cb, sb), (cg, sg) = (
-            (cos(angle), sin(angle)) for angle in (self.yaw_rad, self.tilt_y_rad, self.tilt_x_rad)
-        )
-        return np.array(
-            [
-                [ca * cb, ca * sb * sg - sa * cg, ca * sb * cg + sa * sg, self.x_mm],
-                [sa * cb, sa * sb * sg + ca * cg, sa * sb * cg - ca * sg, self.y_mm],
-                [-sb, cb * sg, cb * cg, self.z_mm],
-                [0.0, 0.0, 0.0, 1.0],
-            ]
-        )
+        x, y, z = self.x_mm, self.y_mm, self.z_mm
+        return RigidTransform(x, y, z, self.tilt_x_rad, self.tilt_y_rad, self.yaw_rad).matrix
 
     @property
     def T_paper_base(self) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from planner.cli.arm_import import add_import_options, import_arm, refuse_import_options
 from planner.cli.files import output_file
@@ -15,7 +15,7 @@ from planner.cli.parser import Parser
 from planner.cli.quantities import angle_deg
 from planner.cli.terminal import print_lines
 from planner.counted import counted
-from planner.errors import OutputError, PlanError, UsageError
+from planner.errors import PlanError, UsageError
 
 if TYPE_CHECKING:
     from planner.arms.arm import Arm
@@ -117,16 +117,10 @@ def _configuration(arm: Arm, positions: Sequence[float], frame: str, *, as_json:
 def _report(arm: Arm, folder: Path) -> int:
     """Errors: OutputError."""
     check_folder_target(folder, _PAGE)
-    from planner.files import written_aside
     from planner.report.arm_page import arm_page
+    from planner.report.page import write_page
 
-    page = arm_page(arm)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(str(folder), error.strerror or str(error)) from error
-    with written_aside(folder / _PAGE) as file:
-        cast("IO[str]", file).write(page)
+    write_page(arm_page(arm), folder / _PAGE)
     print_lines([f"wrote {folder / _PAGE}"])
     return 0
 

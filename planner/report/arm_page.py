@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -17,13 +16,13 @@ from planner.plots.workspace import plot_workspace
 from planner.redundancy.arm_model import ArmModel
 from planner.report.markup import Markup, Section, definitions, element, joined, table
 from planner.report.opening import contents, figure
+from planner.report.page import page
 from planner.report.pictures import picture
 from planner.settings import CanvasKind
 from planner.workspace.canvas import canvas_of
 from planner.workspace.paper_map import paper_map
 from planner.workspace.reach import paper_in_reach
 
-_POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
 _SHOWN = (0.5, 0.1, 0.9)
 """Where along the canvas, from near to far, configurations are shown."""
 
@@ -38,23 +37,14 @@ def arm_page(arm: Arm) -> Markup:
         sections = []
         verdict = element("p", f"It cannot draw: {error}", class_="bad")
     sections += _file(arm)
-    head = element(
-        "head",
-        element("meta", charset="utf-8"),
-        element("meta", http_equiv="Content-Security-Policy", content=_POLICY),
-        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        element("title", f"arm {arm.name}"),
-        element("style", Markup(files(__package__).joinpath("page.css").read_text(encoding="utf-8"))),
-    )
-    body = element(
-        "body",
+    return page(
+        f"arm {arm.name}",
         element("h1", arm.name),
         element("p", arm.source, class_="quiet"),
         verdict,
         contents(sections),
         *(one.markup() for one in sections),
     )
-    return Markup(f"<!doctype html>\n{element('html', head, body, lang='en')}\n")
 
 
 def _drawing(model: ArmModel) -> Iterator[Section]:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
-from typing import IO, cast
 
 from planner.arrays import FloatArray
 from planner.checking.chain import chain_poses
@@ -14,14 +12,13 @@ from planner.checking.check_result import CheckResult
 from planner.counted import clock
 from planner.drawing.drawing import Drawing
 from planner.error_model.prediction import Prediction
-from planner.errors import OutputError
-from planner.files import written_aside
 from planner.motion.speed_limit import pen_speed_mm_s
 from planner.plots.motion import motion_of
 from planner.redundancy.arm_model import ArmModel
 from planner.report.film import film
 from planner.report.markup import Markup, Section, clean, element, joined, table
 from planner.report.opening import account_facts, contents, figure, opening
+from planner.report.page import page, write_page
 from planner.report.pictures import expected_picture, pictures, sheet_picture
 from planner.report.tables import check, joints, making, strokes
 from planner.settings import PlanSettings
@@ -53,13 +50,7 @@ class Planned:
 def write_report(planned: Planned, target: Path, report: Callable[[int, int], None] = lambda done, total: None) -> None:
     """Write the page, whole or not at all, in the place of one that is there; folders that are missing are made.
     report: is told how many of its sections are done. Errors: OutputError."""
-    page = report_page(planned, report)
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(str(target.parent), error.strerror or str(error)) from error
-    with written_aside(target) as file:
-        cast("IO[str]", file).write(page)
+    write_page(report_page(planned, report), target)
 
 
 def report_page(planned: Planned, report: Callable[[int, int], None] = lambda done, total: None) -> Markup:
@@ -73,29 +64,15 @@ def report_page(planned: Planned, report: Callable[[int, int], None] = lambda do
         sections.append(one)
         report(min(len(sections), _N_SECTIONS), _N_SECTIONS)
     heading = clean(trajectory.title)
-    head = element(
-        "head",
-        element("meta", charset="utf-8"),
-        element("meta", http_equiv="Content-Security-Policy", content=_policy(script)),
-        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
-        element("title", f"{heading} on {arm.name}"),
-        element("style", Markup(files(__package__).joinpath("page.css").read_text(encoding="utf-8"))),
-    )
-    body = element(
-        "body",
+    return page(
+        f"{heading} on {arm.name}",
         element("h1", heading),
         element("p", f"on {arm.name}, by method {trajectory.method}", class_="quiet"),
         opening(sheet_picture(trajectory, tip_mm), planned.summary, trajectory, planned.check_result, planned.accuracy),
         contents(sections),
         *(one.markup() for one in sections),
+        script=script,
     )
-    return Markup(f"<!doctype html>\n{element('html', head, body, lang='en')}\n")
-
-
-def _policy(script: str) -> str:
-    """The page loads nothing, and a browser is told not to even if something in it asked. script: the hash of the only
-    one that runs."""
-    return f"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src {script}"
 
 
 def _sections(planned: Planned, tip_mm: FloatArray, frame: Markup) -> Iterator[Section]:
