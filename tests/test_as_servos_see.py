@@ -2,11 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from planner import check
+from planner.arms.arm_file import load_arm
 from planner.as_servos_see import cut_corners_mm, samples_a_set_point
+from planner.cli import main
+from planner.trajectory import Trajectory
+
+SPIROGRAPH = Path(__file__).parents[1] / "examples" / "spirograph.svg"
+
+
+@pytest.mark.parametrize("name", ["drawing_arm", "drawing_arm_2022", "so101"])
+def test_what_servos_see_of_a_plan_keeps_its_promise(name: str, tmp_path: Path) -> None:
+    """Nobody says a rate: the set points that the servos take, with straight lines between, draw the drawing."""
+    path = tmp_path / "traj.csv"
+    assert main([str(SPIROGRAPH), "--arm", name, "-o", str(path), "--quiet"]) == 0
+    trajectory, period_s = Trajectory.load(path), load_arm(name).set_point_period_s
+    assert period_s is not None
+    every = round(period_s * trajectory.rate_hz)
+    seen = replace(
+        trajectory,
+        rate_hz=1 / period_s,
+        positions=trajectory.positions[::every],
+        pen=trajectory.pen[::every],
+        stroke=trajectory.stroke[::every],
+        decimals=None if trajectory.decimals is None else trajectory.decimals[::every],
+    )
+    result = check(seen, SPIROGRAPH)
+    assert result.passed, str(result)
 
 
 @given(st.integers(2, 8), st.floats(1.0, 100.0), st.floats(0.001, 0.05))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from planner.arms.arm import Arm
-from planner.settings import MAX_RATE_HZ, PlanSettings
+from planner.settings import MAX_RATE_HZ, MIN_RATE_HZ, PlanSettings
 
 _SHARE = 0.5
 """Of the error that an arm is expected to draw with: as the tolerance is the most, and a part of that the usual, what
@@ -14,11 +14,12 @@ _SHORTEST_S = 1e-9
 
 
 def usual_rate_hz(arm: Arm) -> float:
-    """100 samples a second at least, and as many whole ones to each set point that the servos take."""
-    least = PlanSettings().rate_hz
+    """A sample for each set point that the servos take, so that they see what was planned; as many whole ones as make
+    50 a second where they take fewer, and 100 a second where nobody has said how often they do."""
     if arm.set_point_period_s is None:
-        return least
-    return min(math.ceil(least * arm.set_point_period_s - _SHORTEST_S) / arm.set_point_period_s, MAX_RATE_HZ)
+        return PlanSettings().rate_hz
+    samples = max(math.ceil(MIN_RATE_HZ * arm.set_point_period_s - _SHORTEST_S), 1)
+    return min(samples / arm.set_point_period_s, MAX_RATE_HZ)
 
 
 def usual_tolerance_mm(arm: Arm) -> float:

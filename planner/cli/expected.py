@@ -18,6 +18,7 @@ _DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 40" fill=
 def expected(arm_toml: str) -> Prediction:
     """The prediction for the arm that the text of a file describes. Errors: PlannerError."""
     from planner.arms.arm_file import load_arm
+    from planner.arms.usual_settings import usual_rate_hz
     from planner.cli.predict import prediction_of
     from planner.pipeline import plan
     from planner.settings import PlanSettings
@@ -27,5 +28,7 @@ def expected(arm_toml: str) -> Prediction:
         drawing.write_text(_DRAWING, encoding="utf-8")
         arm = Path(folder) / "arm.toml"
         arm.write_text(arm_toml, encoding="utf-8")
-        trajectory = plan(drawing, PlanSettings(arm=str(arm)), lambda stage, done, total: None).trajectory
-        return prediction_of(load_arm(str(arm)), trajectory, drawing, seed=0)
+        loaded = load_arm(str(arm))
+        settings = PlanSettings(arm=str(arm), rate_hz=usual_rate_hz(loaded))
+        trajectory = plan(drawing, settings, lambda stage, done, total: None).trajectory
+        return prediction_of(loaded, trajectory, drawing, seed=0)

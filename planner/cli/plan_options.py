@@ -76,7 +76,8 @@ def add_arm_and_placement_options(parser: Parser) -> None:
         "--rate",
         type=number(minimum=MIN_RATE_HZ, maximum=MAX_RATE_HZ),
         metavar="HZ",
-        help=f"samples a second (default: {default.rate_hz:g}, or more where the arm's servos take set points faster)",
+        help="samples a second (default: one for each set point that the arm's servos take, or else"
+        f" {default.rate_hz:g})",
     )
     motion.add_argument(
         "--tolerance",
