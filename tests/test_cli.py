@@ -463,6 +463,30 @@ def test_help_loads_nothing_heavy_and_answers_at_once() -> None:
     assert time.perf_counter() - began < 2  # 0.1 s on a machine of its own
 
 
+def test_a_plan_loads_what_a_plan_needs(tmp_path: Path) -> None:
+    drawing = tmp_path / "box.svg"
+    drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H40V20H0Z" stroke="red"/></svg>')
+    unneeded = (
+        "hardware",
+        "loky",
+        "matplotlib",
+        "numpy.f2py",
+        "rich",
+        "scipy.linalg",
+        "scipy.optimize",
+        "scipy.spatial",
+    )
+    script = (
+        "import sys; from planner.cli import main;"
+        f" code = main([{str(drawing)!r}, '-o', {str(tmp_path / 'box.csv')!r}, '--quiet']); "
+        f"sys.exit(code or ','.join(m for m in {unneeded} if m in sys.modules) or 0)"
+    )
+    assert main([str(drawing), "-o", str(tmp_path / "box.csv"), "--quiet"]) == 0  # the arm's maps are kept
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
+    assert done.stderr == ""
+    assert done.returncode == 0
+
+
 def test_run_loads_no_solver_and_no_pictures(sweep_csv: Path) -> None:
     light = [name for name in HEAVY if name not in ("numpy", "pydantic")]
     script = (

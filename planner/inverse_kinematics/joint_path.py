@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import solve_banded
 
 from planner.arrays import FloatArray, IntArray
+from planner.lapack import dgbsv
 from planner.ragged import starts_of, within
 from planner.spline import weights
 from planner.spline_paths import DEGREE, SplinePaths
@@ -46,4 +46,5 @@ def interpolate(n_cells: IntArray, knots: FloatArray) -> JointPaths:
     set_rows(starts + count - 1, ends, slope)
     right = np.zeros((total, knots.shape[1]))
     right[inner] = knots
-    return JointPaths(n_cells, solve_banded((4, 4), band, right))
+    _, _, controls, _ = dgbsv(4, 4, np.pad(band, ((4, 0), (0, 0))), right, overwrite_ab=True, overwrite_b=True)
+    return JointPaths(n_cells, np.ascontiguousarray(controls))

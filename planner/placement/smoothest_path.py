@@ -9,9 +9,9 @@ interior-point method solves it for many paths at once, from any start, by bande
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg.lapack import dpbtrf, dpbtrs
 
 from planner.arrays import FloatArray, IntArray
+from planner.lapack import dpbtrf, dpbtrs
 from planner.placement.tube import Tube, local_controls
 from planner.ragged import starts_of
 from planner.spline import weights

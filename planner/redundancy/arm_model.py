@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cached_property
 
+import numpy as np
+
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.kept import Arrays, kept
@@ -13,7 +15,7 @@ from planner.kinematics.limits import Limits
 from planner.kinematics.link_clearance import LinkClearance
 from planner.redundancy.configuration_map import ConfigurationMap
 from planner.redundancy.plane_map import PlaneMap, plane_branches
-from planner.redundancy.ring_map import RingMap, levelled, ring_branches
+from planner.redundancy.ring_map import RingMap, levelled, ray_of, ring_branches
 from planner.settings import ConfigurationWeights
 
 
@@ -45,7 +47,10 @@ class ArmModel:
     def level(self) -> Kinematics:
         """Those of the arm on a level paper, which the maps of an arm that turns over its paper are made for;
         of the arm as it is where it does not."""
-        return levelled(self.kinematics) if self.kinematics.turns_over_paper else self.kinematics
+        if not self.kinematics.turns_over_paper:
+            return self.kinematics
+        ray = self.kept("ray", lambda: {"rad": np.array(ray_of(self.kinematics))})
+        return levelled(self.kinematics, float(ray["rad"]))
 
     def branches(self, weights: ConfigurationWeights | None = None) -> tuple[ConfigurationMap, ...]:
         """The configuration maps for these weights, or the arm's own, that of most of the paper first: rings where the

@@ -168,11 +168,11 @@ class RingMap:
         return configurations, exact & within_limits(self.arm, self.arm.complete(configurations))
 
 
-def levelled(kinematics: Kinematics) -> Kinematics:
-    """The arm on a level paper of the same height at the base axis, whose x axis is the ray that a map is made for:
-    as it is, where its paper is the base plane and the arm turns to its x axis. A paper that is higher is a first row
-    that is shorter."""
-    arm, ray_rad = kinematics.arm, _ray_rad(kinematics)
+def levelled(kinematics: Kinematics, ray_rad: float) -> Kinematics:
+    """The arm on a level paper of the same height at the base axis, whose x axis is the ray that a map is made for, as
+    of `ray_of`: as it is, where its paper is the base plane and the arm turns to its x axis. A paper that is higher is
+    a first row that is shorter."""
+    arm = kinematics.arm
     if arm.paper.is_base_plane and ray_rad == 0.0:
         return kinematics
     T = arm.paper.T_base_paper
@@ -181,9 +181,9 @@ def levelled(kinematics: Kinematics) -> Kinematics:
     return Kinematics(replace(arm, joints=(first, *arm.joints[1:]), paper=PaperPose(yaw_rad=ray_rad)))
 
 
-def _ray_rad(kinematics: Kinematics) -> float:
-    """An azimuth about the base axis that the limits of the first joint leave to the arm: zero if it is one, else the
-    middle of all."""
+def ray_of(kinematics: Kinematics) -> float:
+    """An azimuth about the base axis, in radians, that the limits of the first joint leave to the arm: zero if it is
+    one, else the middle of all."""
     starts = starts_for_paper(kinematics, _TURNED, _NEAREST)
     if not len(starts):
         return 0.0

@@ -8,9 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dpbtrf, dpbtrs
 
 from planner.arrays import BoolArray, FloatArray
+from planner.lapack import dpbtrf, dpbtrs
 from planner.timing.cell_cubics import BOOLE, VALUE_FORMS
 from planner.timing.cell_layout import CellLayout
 from planner.timing.discrete_problem import DiscreteProblem
