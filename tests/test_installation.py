@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import json
 import os
 import shutil
 import subprocess
@@ -166,6 +167,18 @@ def test_a_package_that_python_finds_first_is_named(site: Path, tmp_path: Path, 
     place.write_text("raise SystemExit('strangers')\n", encoding="utf-8")
     line = told(run(site, "--help", first=first))
     assert f"another package '{name}'" in line and str(first) in line
+
+
+def test_a_checkout_that_is_installed_editable_is_ours(site: Path, tmp_path: Path) -> None:
+    checkout = tmp_path / "a checkout"
+    checkout.mkdir()
+    for package in ("planner", "hardware"):
+        shutil.move(site / package, checkout / package)
+    assert "another package 'planner'" in told(run(site, "--version", first=checkout))
+    (info,) = site.glob("*.dist-info")
+    (info / "direct_url.json").write_text(json.dumps({"dir_info": {"editable": True}, "url": checkout.as_uri()}))
+    ended = run(site, "--version", first=checkout)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, f"drawing-arm-planner {planner.__version__}\n", "")
 
 
 def test_a_dependency_that_is_gone_is_named(site: Path) -> None:
