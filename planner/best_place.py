@@ -20,7 +20,6 @@ from planner.arrays import FloatArray, IntArray
 from planner.assembly import assembled
 from planner.counted import counted
 from planner.drawing.drawing import Outline
-from planner.error_model.prediction import Played, expected_rms_mm
 from planner.errors import ArmFileError, PlanError
 from planner.execution.context import PlanContext
 from planner.execution.workers import ChunkExecutor
@@ -235,6 +234,8 @@ def _off_mm(arm: Arm, meant: FloatArray, stroke: IntArray, rate_hz: float) -> fl
     lead = leads_s(arm, 1.0 / rate_hz) * rate_hz
     sent = np.column_stack([np.interp(rows + lead[k], rows, meant[:, k]) for k in range(meant.shape[1])])
     try:
+        from planner.error_model.prediction import Played, expected_rms_mm  # heavy, and few ask for a best place
+
         return expected_rms_mm(_without_slack(arm), Played(sent, meant, stroke, rate_hz))
     except ArmFileError:
         return None

@@ -7,7 +7,6 @@ workers. The doorway to loky, whose processes start without running the main mod
 from __future__ import annotations
 
 import importlib.util
-import multiprocessing.resource_tracker
 import os
 import signal
 import sys
@@ -15,13 +14,15 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from planner.errors import PlannerError, UsageError
+
+if TYPE_CHECKING:  # a second process is more than most drawings take
+    from concurrent.futures import Executor, Future
 
 Chunk = TypeVar("Chunk")
 Result = TypeVar("Result")
@@ -84,6 +85,8 @@ def _shared(
 ) -> Iterator[Result]:
     """Work chunks go to the others as long as these have too few at hand. This process does the next one itself where
     it joins in, else it waits."""
+    from concurrent.futures import FIRST_COMPLETED, wait
+
     due: deque[Future[Result]] = deque()
     try:
         for chunk in chunks:
@@ -114,6 +117,8 @@ def _one_at_a_time(work: Callable[[Chunk], Result], chunk: Chunk) -> Result:
 
 def _done(work: Callable[[Chunk], Result], chunk: Chunk) -> Future[Result]:
     """The work, done here and now; an error waits for its turn, as everyone else's do."""
+    from concurrent.futures import Future
+
     future: Future[Result] = Future()
     try:
         future.set_result(work(chunk))
@@ -147,6 +152,8 @@ def _interrupts_held() -> Iterator[None]:
     if sys.platform == "win32":  # has no such signals to hold
         yield
     else:
+        import multiprocessing.resource_tracker
+
         from loky.backend import resource_tracker
 
         resource_tracker.ensure_running()  # the start of either would let interrupts through again

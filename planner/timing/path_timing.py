@@ -51,7 +51,7 @@ def minimum_time(problem: TimingProblem) -> PathTiming:
     whichever is faster. Either keeps the limits: a path is at rest at both ends whatever the rate.
     """
     group = np.cumsum(problem.n_cells) // _CELLS_AT_ONCE
-    timings = [_timed_together(problem.subset(group == one)) for one in np.unique(group)]
+    timings = [_timed_together(problem.subset(group == one)) for one in sorted(set(group.tolist()))]
     return PathTiming(
         np.concatenate([timing.rates for timing in timings]), np.concatenate([timing.converged for timing in timings])
     )

@@ -480,7 +480,7 @@ def _sampled(
     """Joint samples of every travel move, and where they are exact and within limits; some travel moves at a time."""
     group = (np.cumsum([plan.duration_s for plan in plans]) * rate_hz) // _SAMPLES_AT_ONCE
     joints, exact = [], []
-    for one in np.unique(group):
+    for one in sorted(set(group.tolist())):
         more, good = _sampled_together(kinematics, [plans[k] for k in np.flatnonzero(group == one).tolist()], rate_hz)
         joints += more
         exact += good

@@ -52,7 +52,7 @@ def n_areas(scene: Scene) -> int:
     ]
     paths = [path for shape in shapes for path in shape.outline]
     owner = np.repeat(np.arange(len(shapes)), [len(shape.outline) for shape in shapes])
-    return len(np.unique(owner[go_round(paths)]))
+    return len(set(owner[go_round(paths)].tolist()))
 
 
 def areas(scene: Scene, reading: ReadingOptions, svg_to_arm: FloatArray) -> Iterator[Area]:

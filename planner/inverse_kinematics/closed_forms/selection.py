@@ -9,15 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.polynomial import Chebyshev
 
 from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray
 from planner.errors import PlanError
 from planner.inverse_kinematics.closed_forms.branches import Branches
 from planner.kinematics.limits import SLACK
+
+if TYPE_CHECKING:
+    from numpy.polynomial import Chebyshev
 
 AtTip = Callable[[Arm, FloatArray, FloatArray], Branches]
 """Arm, tips (n, 3) and redundancy (n,) to all configurations."""
@@ -79,6 +82,8 @@ def select(arm: Arm, at_tip: AtTip, redundant: bool) -> Selection:
     first, last = _longest_run(~np.isnan(windows))
     radii = survey.radii_mm[first : last + 1]
     middles = np.unwrap(windows[first : last + 1])
+    from numpy.polynomial import Chebyshev
+
     return Selection(branch, Chebyshev.fit(radii, middles, min(_DEGREE, len(radii) - 1)))
 
 
