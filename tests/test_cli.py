@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -35,6 +35,8 @@ from planner.trajectory import Trajectory, read_trajectory, write_trajectory
 from tests.drawn_shapes import lines_svg
 
 ROOT = Path(__file__).resolve().parent.parent
+USUAL = replace(PlanSettings(), rate_hz=50.0)
+"""Nobody says a rate: it is that of the arm's servos."""
 HEAVY = ("casadi", "loky", "matplotlib", "numpy", "pydantic", "rich", "ruckig", "scipy", "shapely", "tinycss2")
 
 
@@ -135,7 +137,7 @@ def test_a_plan_is_written_summed_up_and_warned_of(
     captured = capsys.readouterr()
     assert captured.out == "1 stroke\n1.00 s\nwrote arc.csv\n"
     assert captured.err == "plan: warning: 2 texts were left out\n"
-    assert asked == [(drawing, PlanSettings())]
+    assert asked == [(drawing, USUAL)]
     assert read_trajectory(drawing.with_name("arc.csv")).n_samples == 101
 
     assert main(["-o", "other.csv", "--quiet", str(drawing)]) == 0
@@ -289,7 +291,7 @@ def test_every_setting_has_an_option(drawing: Path, planned: Callable[..., list[
             value if isinstance(value, ConfigurationWeights | ReadingOptions) else pytest.approx(value)
         )
     assert main([str(drawing), "--align", "top-left"]) == 0
-    assert asked[1][1] == PlanSettings(align=Anchor.TOP_LEFT)
+    assert asked[1][1] == replace(USUAL, align=Anchor.TOP_LEFT)
 
 
 @pytest.mark.parametrize(
@@ -301,7 +303,7 @@ def test_weights_that_mean_nothing_are_refused(drawing: Path, text: str, capsys:
 
 
 def test_the_defaults_are_those_of_the_settings() -> None:
-    assert settings_of(plan_parser().parse_args(["a.svg"])) == PlanSettings()
+    assert settings_of(plan_parser().parse_args(["a.svg"])) == USUAL
 
 
 @pytest.mark.parametrize(

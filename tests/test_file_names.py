@@ -60,7 +60,7 @@ def test_a_plan_on_standard_output_is_rows_alone(desk: Path, command: Command, a
     assert code == 0 and not (desk / "-").exists()
     (desk / "piped.csv").write_bytes(rows)
     assert read_trajectory(desk / "piped.csv").n_samples == read_trajectory(desk / "traj.csv").n_samples
-    assert "samples at 100 Hz" in told and "wrote -" not in told
+    assert "samples at 50 Hz" in told and "wrote -" not in told
 
 
 def test_every_command_reads_standard_input(desk: Path, command: Command) -> None:

@@ -122,7 +122,8 @@ def subject_in(folder: Path, drawing: Path | None) -> Subject:
     """An arm whose servos turn little in many microseconds: half of one, which the pins are right to, is little."""
     svg, csv = folder / "drawing.svg", folder / "traj.csv"
     svg.write_text(drawing.read_text() if drawing else _DRAWING)
-    if main([str(svg), "-o", str(csv), "--quiet", "--margin", str(_MARGIN_MM)]):
+    # What is allowed beside lines is for set points a hundredth of a second apart.
+    if main([str(svg), "-o", str(csv), "--quiet", "--rate", "100", "--margin", str(_MARGIN_MM)]):
         sys.exit(2)
     trajectory = read_trajectory(csv)
     low, high = trajectory.positions.min(axis=0), trajectory.positions.max(axis=0)

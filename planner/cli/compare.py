@@ -141,7 +141,12 @@ def _check(options: argparse.Namespace, settings: PlanSettings) -> None:
         )
     if options.seed is not None and options.random is None:
         raise UsageError("--seed goes with --random")
-    if options.drawing is None and settings != replace(PlanSettings(), arm=settings.arm, weights=settings.weights):
+    usual = replace(PlanSettings(), arm=settings.arm, weights=settings.weights)
+    if options.rate is None:
+        usual = replace(usual, rate_hz=settings.rate_hz)
+    if options.tolerance is None:
+        usual = replace(usual, tolerance_mm=settings.tolerance_mm)
+    if options.drawing is None and settings != usual:
         raise UsageError(f"placement and motion are of drawings; {given[0]} goes with --arm and --weights alone")
     for place in options.target or ():
         if len(place) not in (2, 3):
