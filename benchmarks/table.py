@@ -13,34 +13,33 @@ import os
 import platform
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks.targets import axidraw, configurations, copp_socp, far, redundancy, scale, smooth, speed, whole
-from benchmarks.targets.row import Row, markdown
+from benchmarks.targets import art, configurations, copp_socp, far, redundancy, scale, speed, third_order, whole
+from benchmarks.targets.row import Row, Table, markdown
 from benchmarks.targets.strokes import drawings
 from planner.arms.arm_file import load_arm
 from planner.errors import PlannerError
 from planner.motion.speed_limit import pen_speed_mm_s
 from planner.settings import PlanSettings
 
-Measure = Callable[[Path, Path, PlanSettings], list[Row]]
+Measure = Callable[[Path, Path, PlanSettings], Sequence[Row | Table]]
 """Folder, the one drawing, and settings to rows."""
 
 MEASURES: dict[str, Measure] = {
-    "toppra": lambda folder, _, settings: smooth.against_toppra(folder, settings),
-    "optimum": lambda folder, _, settings: smooth.against_optimum(folder, settings),
+    "art": lambda folder, _, settings: art.art(folder, settings),
+    "pen-down": lambda _, drawing, settings: art.pen_down(drawing, settings),
+    "optimum": lambda folder, _, settings: third_order.against_optimum(folder, settings),
     "copp": lambda _, __, settings: copp_socp.against_copp(settings),
-    "ink": lambda folder, _, settings: whole.limits_and_ink(folder, settings),
+    "between": lambda folder, _, settings: whole.limits_between(folder, settings),
     "dls": lambda _, drawing, settings: configurations.against_dls(drawing, settings),
     "redundancy": lambda _, drawing, settings: redundancy.against_brute_force(drawing, settings),
     "limits": lambda _, drawing, settings: configurations.limits_of_narrow_arms(drawing, settings),
-    "phases": lambda folder, _, settings: whole.phases(folder, settings),
-    "axidraw": lambda folder, _, settings: axidraw.against_axidraw(folder, settings),
     "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),
     "configurations": lambda _, drawing, settings: speed.configurations(drawing, settings),
     "far": lambda _, __, ___: far.far_targets(),
@@ -88,7 +87,7 @@ def main() -> None:
         parser.error(f"no .svg files in {options.folder}")
     drawing = next((one for one in found if one.stem == "prague"), max(found, key=lambda one: one.stat().st_size))
     settings = PlanSettings(arm=options.arm)
-    rows: list[Row] = []
+    rows: list[Row | Table] = []
     for name in options.only or MEASURES:
         began = time.perf_counter()
         try:

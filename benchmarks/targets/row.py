@@ -1,4 +1,4 @@
-"""A row of the table: what was measured, what it should be, what it is."""
+"""What the page shows: rows of what was measured, what it should be and what it is; and tables of figures."""
 
 from __future__ import annotations
 
@@ -21,6 +21,20 @@ class Row:
         return f"| {self.what} | {self.target} | {self.measured} | {word} |"
 
 
+@dataclass(frozen=True, slots=True)
+class Table:
+    """title: a heading; note: a sentence or two below it; lines: a cell for each of the columns."""
+
+    title: str
+    note: str
+    columns: tuple[str, ...]
+    lines: Sequence[tuple[str, ...]]
+
+    def markdown(self) -> str:
+        cells = [self.columns, ("---", *("---:" for _ in self.columns[1:])), *self.lines]
+        return "\n".join([f"## {self.title}", "", self.note, "", *(f"| {' | '.join(line)} |" for line in cells)])
+
+
 def missing(package: str, what: str, target: str) -> Row | None:
     """The row that says that a rival is not installed, or None where it is."""
     if find_spec(package) is not None:
@@ -28,5 +42,9 @@ def missing(package: str, what: str, target: str) -> Row | None:
     return Row(what, target, f"`{package}` is not installed (extra `benchmark`)")
 
 
-def markdown(rows: Sequence[Row]) -> str:
-    return "\n".join(["| what | target | measured | |", "|---|---|---|---|", *(row.markdown() for row in rows)])
+def markdown(measured: Sequence[Row | Table]) -> str:
+    """All rows in one, and the other tables after it."""
+    rows = [one.markdown() for one in measured if isinstance(one, Row)]
+    head = ["| what | target | measured | |", "|---|---|---|---|"] if rows else []
+    tables = [one.markdown() for one in measured if isinstance(one, Table)]
+    return "\n\n".join([*(["\n".join(head + rows)] if rows else []), *tables])

@@ -23,6 +23,7 @@ from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
 from planner.kinematics.chain import Kinematics
 from planner.kinematics.limits import Limits
 from planner.motion import line
+from planner.motion.speed_limit import pen_speed_mm_s
 from planner.motion.stroke_motion import StrokeMotions, motions
 from planner.placement.pen_path import StrokePaths
 from planner.ragged import starts_of
@@ -55,15 +56,7 @@ class TimedPaths:
     time_s: FloatArray
 
     def single(self, path: int) -> SinglePath:
-        cells, controls = starts_of(self.joints.n_cells), starts_of(self.joints.n_cells + DEGREE)
-        joints = JointPaths(
-            self.joints.n_cells[path : path + 1], self.joints.controls[controls[path] : controls[path + 1]]
-        )
-        return SinglePath(joints, self.cap[cells[path] : cells[path + 1]], self.limits, float(self.time_s[path]))
-
-    def within(self, limits: Limits) -> TimedPaths:
-        """The same paths timed within other limits."""
-        return _timed(self.paths, self.joints, self.cap, limits)
+        return _single(self.joints, self.cap, self.limits, path, float(self.time_s[path]))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -110,13 +103,6 @@ def length_mm(stroke: FloatArray) -> float:
     return float(np.hypot(*np.diff(stroke, axis=0).T).sum())
 
 
-def sharpest_turn_deg(stroke: FloatArray) -> float:
-    """Largest angle by which a polyline turns at a vertex."""
-    steps = np.diff(stroke, axis=0)
-    heading = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
-    return float(np.rad2deg(np.abs(np.diff(heading)).max(initial=0.0)))
-
-
 def followed(
     arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings
 ) -> tuple[StrokePaths, JointPaths, list[InfeasiblePath]]:
@@ -137,6 +123,23 @@ def timed(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> Ti
 def _timed(paths: StrokePaths, joints: JointPaths, cap: FloatArray, limits: Limits) -> TimedPaths:
     motion = motions(joints, minimum_time(problem_of(joints, limits, cap)).rates, limits, UNROUNDED_HZ)
     return TimedPaths(paths, joints, cap, limits, motion, motion.n_periods / UNROUNDED_HZ)
+
+
+def untimed(context: PlanContext, strokes: Sequence[FloatArray]) -> list[SinglePath]:
+    """Their paths at the rate of the settings, for others to time; time_s: what they take at the pen's cap."""
+    settings, kinematics = context.settings, context.model.kinematics
+    paths, joints, _ = line.followed(context.model, context.references, settings, strokes)
+    for _ in range(line.TIMING_SUBDIVISIONS):
+        paths, joints = paths.subdivided(), joints.subdivided()
+    cap = line.pen_speed_limit(kinematics, paths, joints, settings)
+    usual_s = np.array([length_mm(stroke) for stroke in strokes]) / pen_speed_mm_s(kinematics.arm, settings)
+    return [_single(joints, cap, context.model.limits, path, float(usual_s[path])) for path in range(len(strokes))]
+
+
+def _single(joints: JointPaths, cap: FloatArray, limits: Limits, path: int, time_s: float) -> SinglePath:
+    cells, controls = starts_of(joints.n_cells), starts_of(joints.n_cells + DEGREE)
+    own = JointPaths(joints.n_cells[path : path + 1], joints.controls[controls[path] : controls[path + 1]])
+    return SinglePath(own, cap[cells[path] : cells[path + 1]], limits, time_s)
 
 
 def timed_in_chunks(arm: Arm, strokes: Sequence[FloatArray], settings: PlanSettings) -> list[TimedPaths]:

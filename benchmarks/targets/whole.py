@@ -1,4 +1,4 @@
-"""Rows over whole drawings: limits between the cell ends, ink time beside Ruckig's, phases, tolerance."""
+"""Rows over whole drawings: limits between the cell ends, and what the tolerance is worth."""
 
 from __future__ import annotations
 
@@ -9,48 +9,32 @@ import numpy as np
 
 from benchmarks.targets.row import Row
 from benchmarks.targets.strokes import TimedPaths, drawings, lines, placed_strokes, timed_in_chunks
-from planner import pipeline
-from planner.account import PhaseTimes
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
-from planner.comparison.drawing_time import stroke_times
-from planner.errors import PlannerError
-from planner.redundancy.arm_model import ArmModel
-from planner.settings import PlanSettings, Timing
+from planner.settings import PlanSettings
 
 _SAMPLES_PER_CELL = 20
 _CELLS_AT_ONCE = 20_000
+_STROKES = 100
 _TOLERANCES_MM = (0.01, 0.05, 0.1, 0.2)
 
 
-def limits_and_ink(folder: Path, settings: PlanSettings) -> list[Row]:
-    """Limits between the cell ends, and pen-down time of all strokes beside targets joined by Ruckig."""
+def limits_between(folder: Path, settings: PlanSettings) -> list[Row]:
+    """Limits between the cell ends."""
     arm = load_arm(settings.arm)
-    model = ArmModel(arm, cache=False)
-    worst, flowing_s, joined_s = np.zeros(3), 0.0, 0.0
-    by_drawing = []
+    worst = np.zeros(3)
     for drawing in drawings(folder):
         strokes = lines(placed_strokes(drawing, arm, settings))
-        chunks = timed_in_chunks(arm, strokes, settings)
+        chunks = timed_in_chunks(arm, strokes[:: max(len(strokes) // _STROKES, 1)], settings)
         worst = np.max([worst, *(shares_of_limits(paths) for paths in chunks)], axis=0)
-        flows_s, joins_s = (
-            float(np.nansum(stroke_times(model, strokes, replace(settings, timing=timing)).seconds))
-            for timing in Timing
-        )
-        flowing_s, joined_s = flowing_s + flows_s, joined_s + joins_s
-        by_drawing.append(f"{drawing.stem} {joins_s / flows_s:.1f}")
     return [
         Row(
-            f"limits at {_SAMPLES_PER_CELL} samples a cell, all drawings: velocity, acceleration, jerk",
+            f"limits at {_SAMPLES_PER_CELL} samples a cell, about {_STROKES} strokes of each drawing: velocity,"
+            " acceleration, jerk",
             "≤ 1.000 of each",
             ", ".join(f"{share:.4f}" for share in worst),
             bool((worst <= 1.0005).all()),
-        ),
-        Row(
-            "pen-down time of all strokes against pen targets joined by Ruckig (`--timing ruckig`, same tolerance)",
-            "report",
-            f"{flowing_s:.0f} s, Ruckig {joined_s:.0f} s: {joined_s / flowing_s:.1f} x (" + ", ".join(by_drawing) + ")",
-        ),
+        )
     ]
 
 
@@ -73,25 +57,6 @@ def shares_of_limits(paths: TimedPaths) -> FloatArray:
             ):
                 worst[k] = max(worst[k], float((np.abs(rate) / limit).max()))
     return worst
-
-
-def phases(folder: Path, settings: PlanSettings) -> list[Row]:
-    """Whole drawings: time by phase."""
-    rows = []
-    for drawing in drawings(folder):
-        try:
-            told = _told(pipeline.plan(drawing, settings, lambda *_: None).summary.phases)
-        except PlannerError as error:
-            told = str(error)
-        rows.append(Row(f"whole drawing, {drawing.stem}", "report", told))
-    return rows
-
-
-def _told(phases: PhaseTimes) -> str:
-    return (
-        f"{phases.total_s:.1f} s: drawing {phases.drawing_s:.1f}, lowering {phases.lowering_s:.1f}, lifting"
-        f" {phases.lifting_s:.1f}, travelling {phases.travelling_s:.1f}, resting {phases.resting_s:.1f}"
-    )
 
 
 def tolerances(drawing: Path, settings: PlanSettings) -> list[Row]:
