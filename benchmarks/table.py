@@ -20,7 +20,18 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks.targets import art, configurations, copp_socp, far, redundancy, scale, speed, third_order, whole
+from benchmarks.targets import (
+    art,
+    commands,
+    configurations,
+    copp_socp,
+    far,
+    redundancy,
+    scale,
+    speed,
+    third_order,
+    whole,
+)
 from benchmarks.targets.row import Row, Table, markdown
 from benchmarks.targets.strokes import drawings
 from planner.arms.arm_file import load_arm
@@ -43,7 +54,9 @@ MEASURES: dict[str, Measure] = {
     "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),
     "configurations": lambda _, drawing, settings: speed.configurations(drawing, settings),
     "far": lambda _, __, ___: far.far_targets(),
-    "end-to-end": lambda _, drawing, settings: speed.end_to_end(drawing, settings),
+    "small-again": lambda _, __, settings: commands.small_again(settings),
+    "icons": lambda _, __, settings: commands.icons(settings),
+    "end-to-end": lambda _, drawing, settings: commands.end_to_end(drawing, settings),
     "million-points": lambda _, drawing, settings: scale.many_strokes(drawing, settings),
     "long-stroke": lambda _, __, settings: scale.one_stroke(settings),
 }

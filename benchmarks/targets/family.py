@@ -28,30 +28,22 @@ class Cost:
 
 def planned(drawing: Path, settings: PlanSettings) -> Cost:
     """Plan a drawing by the command. Errors: RuntimeError with what the command said."""
-    root = Path(__file__).resolve().parents[2]
     with tempfile.TemporaryDirectory() as folder:
-        began, used_s = time.perf_counter(), _children_s()
-        process = subprocess.Popen(
-            [
-                sys.executable,
-                "-m",
-                "planner.cli",
-                str(drawing),
-                "-o",
-                str(Path(folder) / "traj.csv"),
-                "--quiet",
-                "--arm",
-                settings.arm,
-            ],
-            cwd=root,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-        )
-        peak = _Peak(process.pid)
-        _, errors = process.communicate()
-        cost = Cost(time.perf_counter() - began, _children_s() - used_s, peak.stop())
+        return spent(str(drawing), "-o", str(Path(folder) / "traj.csv"), "--quiet", "--arm", settings.arm)
+
+
+def spent(*arguments: str) -> Cost:
+    """What the command takes with these arguments. Errors: RuntimeError with what it said."""
+    root = Path(__file__).resolve().parents[2]
+    began, used_s = time.perf_counter(), _children_s()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "planner.cli", *arguments], cwd=root, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+    )
+    peak = _Peak(process.pid)
+    _, errors = process.communicate()
+    cost = Cost(time.perf_counter() - began, _children_s() - used_s, peak.stop())
     if process.returncode:
-        raise RuntimeError(f"{drawing.name}: exit code {process.returncode}: {errors.decode().strip()}")
+        raise RuntimeError(f"{' '.join(arguments)}: exit code {process.returncode}: {errors.decode().strip()}")
     return cost
 
 

@@ -1,4 +1,4 @@
-"""How long things take: configurations by the closed form and by the nonlinear program, and one drawing end to end."""
+"""How long configurations take, by the closed form and by the nonlinear program."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.targets.family import planned
 from benchmarks.targets.row import Row
 from benchmarks.targets.strokes import lines, placed_strokes
 from planner.arms.arm_file import load_arm
@@ -47,17 +46,4 @@ def configurations(drawing: Path, settings: PlanSettings) -> list[Row]:
     return [
         Row("closed form, all branches, a point", "≤ 1 µs", f"{closed_us:.2f} µs", closed_us <= 1.0),
         Row("NLP, a warm point", "≤ 110 µs", f"{warm_us:.0f} µs", warm_us <= 110.0),
-    ]
-
-
-def end_to_end(drawing: Path, settings: PlanSettings) -> list[Row]:
-    """The command itself."""
-    cost = planned(drawing, settings)
-    return [
-        Row(
-            f"{drawing.name} end to end",
-            "≤ 5 s, ≤ 300 MB",
-            f"{cost.wall_s:.1f} s ({cost.processors_s:.1f} s of processors), {cost.peak_mb:.0f} MB",
-            cost.wall_s <= 5 and cost.peak_mb <= 300,
-        )
     ]

@@ -21,8 +21,8 @@ _FASTEST = 1e3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Profile:
-    """sigma at the ends of n cells, the rate dsigma/dt there, and when each is passed, (n + 1,) each; the rate's square is
-    linear in each cell."""
+    """sigma at the ends of n cells, the rate dsigma/dt there, and when each is passed, (n + 1,) each; the rate's square
+    is linear in each cell."""
 
     path: SinglePath
     sigma: FloatArray
