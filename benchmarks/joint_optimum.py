@@ -37,6 +37,8 @@ from planner.settings import PlanSettings
 
 _CELL_S = 0.008
 _FEWEST_CELLS, _MOST_CELLS = 3, 220
+_MOST_S = 60.0
+"""Processor time that a stroke's program may take."""
 _DEGREE = 5
 _BEYOND = 0.7
 """How far the pen may go past the end of a segment while it draws that segment, in tolerances."""
@@ -132,7 +134,14 @@ def joint_optimum(context: PlanContext, stroke: FloatArray, planned: TimedStroke
         "ipopt",
         {"x": unknowns, "f": total, "g": casadi.vertcat(*g)},
         {
-            "ipopt": {"print_level": 0, "sb": "yes", "max_iter": 1500, "tol": 1e-6, "linear_solver": "mumps"},
+            "ipopt": {
+                "print_level": 0,
+                "sb": "yes",
+                "max_iter": 1500,
+                "max_cpu_time": _MOST_S,
+                "tol": 1e-6,
+                "linear_solver": "mumps",
+            },
             "print_time": 0,
         },
     )

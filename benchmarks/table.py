@@ -26,10 +26,12 @@ from benchmarks.targets import (
     configurations,
     copp_socp,
     far,
+    joint,
     order,
     redundancy,
     scale,
     speed,
+    spiral,
     third_order,
     whole,
 )
@@ -46,6 +48,8 @@ Measure = Callable[[Path, Path, PlanSettings], Sequence[Row | Table]]
 MEASURES: dict[str, Measure] = {
     "art": lambda folder, _, settings: art.art(folder, settings),
     "pen-down": lambda _, drawing, settings: art.pen_down(drawing, settings),
+    "joint": lambda _, drawing, settings: joint.against_joint_optimum(drawing, settings),
+    "spiral": lambda _, __, settings: spiral.against_optimum(settings),
     "optimum": lambda folder, _, settings: third_order.against_optimum(folder, settings),
     "copp": lambda _, __, settings: copp_socp.against_copp(settings),
     "between": lambda folder, _, settings: whole.limits_between(folder, settings),

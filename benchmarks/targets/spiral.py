@@ -1,5 +1,5 @@
-"""An elliptic spiral through 6000 rounded points beside an independent optimum: the smoothest path within the tolerance,
-and the third-order optimum along it.
+"""An elliptic spiral through 6000 rounded points beside an independent optimum: the smoothest path within the
+tolerance, and the third-order optimum along it.
 
 The smoothest path: a quintic spline of few knots whose third derivative over the turn is least in the mean square, each
 point no further than the tolerance aside of it (a quadratic program, Ipopt). Its configurations are those of the arm's
@@ -52,8 +52,8 @@ def against_optimum(settings: PlanSettings) -> list[Row]:
     least_s = least_time_s(_joint_path(smoothest(stroke, asked.tolerance_mm), asked), finer=1)
     return [
         Row(
-            f"elliptic spiral of {_POINTS} points, `--speed {_SPEED_MM_S:g} --rate {_RATE_HZ:g}`, against the third-order"
-            " optimum on the smoothest path within the tolerance",
+            f"elliptic spiral of {_POINTS} points, `--speed {_SPEED_MM_S:g} --rate {_RATE_HZ:g}`, against the"
+            " third-order optimum on the smoothest path within the tolerance",
             "≤ 1.03",
             f"{ours_s:.3f} s, optimum {least_s:.3f} s: {ours_s / least_s:.3f}",
             bool(ours_s <= 1.03 * least_s) if np.isfinite(least_s) else None,
