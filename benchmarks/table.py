@@ -1,9 +1,10 @@
 """The planner beside its targets and its rivals, as one table: same machine, same run.
 
-    python benchmarks/table.py FOLDER_OF_DRAWINGS [-o docs/benchmarks.md] [--only NAME ...]
+    python benchmarks/table.py FOLDER_OF_DRAWINGS [-o docs/benchmarks.md] [--only ROWS ...] [--drawing NAME ...]
 
 The rivals come with the extra `benchmark`; a row whose rival is not installed says so. Rows about one drawing take
-prague.svg of the folder, or the drawing with the most bytes.
+prague.svg of the folder, or the drawing with the most bytes. Without --only all is measured but what takes minutes by
+itself: --only million-points, --only long-stroke.
 """
 
 from __future__ import annotations
@@ -42,21 +43,21 @@ from planner.errors import PlannerError
 from planner.motion.speed_limit import pen_speed_mm_s
 from planner.settings import PlanSettings
 
-Measure = Callable[[Path, Path, PlanSettings], Sequence[Row | Table]]
-"""Folder, the one drawing, and settings to rows."""
+Measure = Callable[[Sequence[Path], Path, PlanSettings], Sequence[Row | Table]]
+"""Drawings, the one drawing, and settings to what is measured."""
 
 MEASURES: dict[str, Measure] = {
-    "art": lambda folder, _, settings: art.art(folder, settings),
+    "art": lambda files, _, settings: art.art(files, settings),
     "pen-down": lambda _, drawing, settings: art.pen_down(drawing, settings),
     "joint": lambda _, drawing, settings: joint.against_joint_optimum(drawing, settings),
     "spiral": lambda _, __, settings: spiral.against_optimum(settings),
-    "optimum": lambda folder, _, settings: third_order.against_optimum(folder, settings),
+    "optimum": lambda files, _, settings: third_order.against_optimum(files, settings),
     "copp": lambda _, __, settings: copp_socp.against_copp(settings),
-    "between": lambda folder, _, settings: whole.limits_between(folder, settings),
+    "between": lambda files, _, settings: whole.limits_between(files, settings),
     "dls": lambda _, drawing, settings: configurations.against_dls(drawing, settings),
     "redundancy": lambda _, drawing, settings: redundancy.against_brute_force(drawing, settings),
     "limits": lambda _, drawing, settings: configurations.limits_of_narrow_arms(drawing, settings),
-    "order": lambda folder, _, settings: order.against_lkh(folder, settings),
+    "order": lambda files, _, settings: order.against_lkh(files, settings),
     "tolerance": lambda _, drawing, settings: whole.tolerances(drawing, settings),
     "configurations": lambda _, drawing, settings: speed.configurations(drawing, settings),
     "far": lambda _, __, ___: far.far_targets(),
@@ -66,9 +67,11 @@ MEASURES: dict[str, Measure] = {
     "million-points": lambda _, drawing, settings: scale.many_strokes(drawing, settings),
     "long-stroke": lambda _, __, settings: scale.one_stroke(settings),
 }
+LONG = ("million-points", "long-stroke")
+"""Take minutes each, and are measured only where they are named."""
 MARK = "<!-- from here on by benchmarks/table.py -->"
 """What stands above it on a page is kept."""
-LIBRARIES = ("numpy", "scipy", "casadi", "ruckig", "toppra", "copp-py")
+LIBRARIES = ("numpy", "scipy", "casadi", "ruckig", "toppra", "copp-py", "elkai")
 
 
 def machine() -> str:
@@ -99,18 +102,19 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("-o", "--output", type=Path, help="Markdown file; without it, standard output")
     parser.add_argument("--only", action="append", choices=list(MEASURES), help="measure this alone; may be repeated")
+    parser.add_argument("--drawing", action="append", help="take this drawing alone, by its name; may be repeated")
     parser.add_argument("--arm", default=PlanSettings().arm)
     options = parser.parse_args()
-    found = drawings(options.folder)
+    found = [one for one in drawings(options.folder) if options.drawing is None or one.stem in options.drawing]
     if not found:
-        parser.error(f"no .svg files in {options.folder}")
+        parser.error(f"no such .svg files in {options.folder}")
     drawing = next((one for one in found if one.stem == "prague"), max(found, key=lambda one: one.stat().st_size))
     settings = PlanSettings(arm=options.arm)
     rows: list[Row | Table] = []
-    for name in options.only or MEASURES:
+    for name in options.only or [name for name in MEASURES if name not in LONG]:
         began = time.perf_counter()
         try:
-            measured = MEASURES[name](options.folder, drawing, settings)
+            measured = list(MEASURES[name](found, drawing, settings))
         except PlannerError as error:
             measured = [Row(name, "", str(error))]
         rows += measured

@@ -11,7 +11,7 @@ from benchmarks.targets.axidraw import GAP_MM, axidraw
 from benchmarks.targets.ink import InkTimes, ink_times
 from benchmarks.targets.row import Row, Table, missing
 from benchmarks.targets.saxi import saxi
-from benchmarks.targets.strokes import drawings, lines, placed_strokes
+from benchmarks.targets.strokes import lines, placed_strokes
 from planner import pipeline
 from planner.account import PhaseTimes
 from planner.arms.arm_file import load_arm
@@ -66,10 +66,10 @@ class Beside:
         )
 
 
-def art(folder: Path, settings: PlanSettings) -> list[Row | Table]:
-    """Of all drawings of a folder, with gaps joined that AxiDraw joins."""
+def art(files: Sequence[Path], settings: PlanSettings) -> list[Row | Table]:
+    """Of all drawings, with gaps joined that AxiDraw joins."""
     found, rows = [], []
-    for drawing, rate_hz in product(drawings(folder), _RATES_HZ):
+    for drawing, rate_hz in product(files, _RATES_HZ):
         asked = replace(settings, tolerance_mm=TOLERANCE_MM, rate_hz=rate_hz, join_mm=GAP_MM)
         try:
             found.append(_beside(drawing, asked))

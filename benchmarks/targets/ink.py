@@ -53,6 +53,6 @@ def _of_chunk(chunk: StrokeChunk) -> FloatArray:
         if profile is None:
             continue
         samples = toppra_slowed.slowed(profile, settings.rate_hz)
-        smoothed_s = toppra_ruckig.smoothed_s(profile, strokes[index], context.model.kinematics, settings.tolerance_mm)
-        found[index] = profile.duration_s, (len(samples) - 1) / settings.rate_hz, smoothed_s
+        way = toppra_ruckig.smoothed(profile, strokes[index], context.model.kinematics, settings.tolerance_mm)
+        found[index] = profile.duration_s, (len(samples) - 1) / settings.rate_hz, way.duration_s
     return found

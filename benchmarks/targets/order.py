@@ -16,7 +16,7 @@ import numpy as np
 
 from benchmarks.targets import lkh
 from benchmarks.targets.row import Row, missing
-from benchmarks.targets.strokes import drawings, placed_strokes
+from benchmarks.targets.strokes import placed_strokes
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.execution.context import PlanContext
@@ -39,12 +39,12 @@ _RATE_HZ = 1000.0
 _WORKERS = Workers(2)
 
 
-def against_lkh(folder: Path, settings: PlanSettings) -> list[Row]:
+def against_lkh(files: Sequence[Path], settings: PlanSettings) -> list[Row]:
     what = "pen-up time between strokes, order by LKH in true hop times"
     if absent := missing("elkai", what, "≤ 1.02"):
         return [absent]
     arm = load_arm(settings.arm)
-    given = ((drawing, placed_strokes(drawing, arm, settings)) for drawing in drawings(folder))
+    given = ((drawing, placed_strokes(drawing, arm, settings)) for drawing in files)
     some = [(drawing, strokes) for drawing, strokes in given if _FEWEST <= len(strokes) <= _MOST]
     rows = []
     for drawing, strokes in sorted(some, key=lambda one: -len(one[1]))[:_DRAWINGS]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.targets.fine_nlp import least_time_s
 from benchmarks.targets.row import Row
-from benchmarks.targets.strokes import drawings, lines, placed_strokes, timed
+from benchmarks.targets.strokes import lines, placed_strokes, timed
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.settings import PlanSettings
@@ -22,12 +23,12 @@ _FINER = 8
 """Cells of the rivals for each of the planner's: with 2 their optimum of a stroke full of corners is 4 % slower."""
 
 
-def against_optimum(folder: Path, settings: PlanSettings) -> list[Row]:
+def against_optimum(files: Sequence[Path], settings: PlanSettings) -> list[Row]:
     arm = load_arm(settings.arm)
     fine: list[float] = []
     small: list[float] = []
     gave_up = 0
-    for drawing in drawings(folder):
+    for drawing in files:
         paths = timed(arm, _spread(lines(placed_strokes(drawing, arm, settings)), 12 * _COMPARED_OF_EACH), settings)
         order = np.flatnonzero(paths.joints.n_cells <= _COMPARED_CELLS)[:_COMPARED_OF_EACH]
         for path in order.tolist():

@@ -35,23 +35,25 @@ class Joined:
     joints: FloatArray
 
 
-def smoothed_s(profile: Profile, stroke: FloatArray, kinematics: Kinematics, tolerance_mm: float) -> float:
-    """Seconds of the best way within the tolerance of a stroke (n, 2); NaN where there is none."""
+def smoothed(profile: Profile, stroke: FloatArray, kinematics: Kinematics, tolerance_mm: float) -> Joined:
+    """The best way within the tolerance of a stroke (n, 2); none, of NaN seconds, where there is none."""
     line = shapely.LineString(stroke)
-    best_s = np.inf
+    shapely.prepare(line)
+    best = Joined(float("nan"), np.empty((0, 3, profile.path.joints.controls.shape[1])))
     for spacing_s in _SPACINGS_S:
         fails, works = -1, len(_STRETCHES)
         while works - fails > 1:
             tried = (fails + works) // 2
-            if profile.duration_s * _STRETCHES[tried] >= best_s:
+            if profile.duration_s * _STRETCHES[tried] >= best.duration_s:
                 works = tried
                 continue
             way = joined(profile, float(_STRETCHES[tried]), spacing_s)
             if np.isfinite(way.duration_s) and _strays_mm(way.joints, line, kinematics) <= tolerance_mm:
-                works, best_s = tried, min(best_s, way.duration_s)
+                works = tried
+                best = best if best.duration_s <= way.duration_s else way
             else:
                 fails = tried
-    return best_s if np.isfinite(best_s) else float("nan")
+    return best
 
 
 def joined(profile: Profile, stretch: float, spacing_s: float) -> Joined:

@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.targets.row import Row
-from benchmarks.targets.strokes import TimedPaths, drawings, lines, placed_strokes, timed_in_chunks
+from benchmarks.targets.strokes import TimedPaths, lines, placed_strokes, timed_in_chunks
 from planner.arms.arm_file import load_arm
 from planner.arrays import FloatArray
 from planner.settings import PlanSettings
 
 _SAMPLES_PER_CELL = 20
 _CELLS_AT_ONCE = 20_000
-_STROKES = 100
+_STROKES = 40
 _TOLERANCES_MM = (0.01, 0.05, 0.1, 0.2)
 
 
-def limits_between(folder: Path, settings: PlanSettings) -> list[Row]:
+def limits_between(files: Sequence[Path], settings: PlanSettings) -> list[Row]:
     """Limits between the cell ends."""
     arm = load_arm(settings.arm)
     worst = np.zeros(3)
-    for drawing in drawings(folder):
+    for drawing in files:
         strokes = lines(placed_strokes(drawing, arm, settings))
         chunks = timed_in_chunks(arm, strokes[:: max(len(strokes) // _STROKES, 1)], settings)
         worst = np.max([worst, *(shares_of_limits(paths) for paths in chunks)], axis=0)
