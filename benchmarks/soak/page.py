@@ -1,4 +1,4 @@
-"""Sequences of starts, stops and reloads against one server, and what its memory does meanwhile.
+"""Sequences of starts, stops and reloads, made by hypothesis, against one server, and what its memory does meanwhile.
 
 python benchmarks/soak/page.py [--sequences 1000] [--seed 1]
 """
@@ -6,19 +6,18 @@ python benchmarks/soak/page.py [--sequences 1000] [--seed 1]
 from __future__ import annotations
 
 import argparse
-import json
-import random
 import sys
 import tempfile
 from pathlib import Path
 
+import hypothesis
+
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from tests.serve.sequences import NAMES, follow  # noqa: E402
+from tests.serve.sequences import STEPS, follow  # noqa: E402
 from tests.serve.served import Server  # noqa: E402
 
-_MOST_STEPS = 8
 _TOLD_EVERY = 50
 
 
@@ -32,18 +31,27 @@ def main() -> None:
     parser.add_argument("--sequences", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    chance = random.Random(options.seed)  # noqa: S311
     with tempfile.TemporaryDirectory() as folder, Server(Path(folder), "--demo") as server:
         key = server.planned()["id"]
-        for number in range(options.sequences):
-            steps = chance.choices(NAMES, k=chance.randint(1, _MOST_STEPS))
-            try:
-                follow(server, key, steps)
-            except AssertionError as error:
-                print(json.dumps({"sequence": number, "steps": steps, "fault": str(error)[:300]}), flush=True)
-                raise SystemExit(1) from error
-            if (number + 1) % _TOLD_EVERY == 0:
-                print(f"{number + 1} sequences, server {resident_mb(server.process.pid):.0f} MB", flush=True)
+        done = 0
+
+        @hypothesis.seed(options.seed)
+        @hypothesis.settings(
+            max_examples=options.sequences,
+            deadline=None,
+            database=None,
+            suppress_health_check=list(hypothesis.HealthCheck),
+        )
+        @hypothesis.given(STEPS)
+        def leaves_no_stuck_state(steps: list[str]) -> None:
+            nonlocal done
+            follow(server, key, steps)
+            done += 1
+            if done % _TOLD_EVERY == 0:
+                print(f"{done} sequences, server {resident_mb(server.process.pid):.0f} MB", flush=True)
+
+        leaves_no_stuck_state()
+        print(f"{done} sequences left no stuck state, server {resident_mb(server.process.pid):.0f} MB")
 
 
 if __name__ == "__main__":
