@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from playwright.sync_api import Browser, CDPSession, Page, expect, sync_playwright
@@ -26,14 +27,20 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.browser.chromium import executable  # noqa: E402
+from benchmarks.on_pins import PinClock, left_at_s  # noqa: E402
 from benchmarks.soak.page import resident_mb  # noqa: E402
+from hardware.compensation.servo_values import pulse_calibration  # noqa: E402
+from planner.arms.arm_file import load_arm  # noqa: E402
 from planner.cli import main as plan  # noqa: E402
 from tests.hardware.controllers.lines import pty_line  # noqa: E402
 from tests.hardware.controllers.maestro import MaestroModel  # noqa: E402
+from tests.hardware.emulator.emulator import build, on_pty  # noqa: E402
 from tests.serve.served import Server  # noqa: E402
 
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 ARM = "drawing_arm_2022"
+_FIRMWARE_ARM = "drawing_arm"
+"""Whose pulses the firmware makes: some of the other's are too short for it."""
 _PATIENCE_MS = 120_000
 _STARTS, _STOPS = 5, 10
 _PAUSE_S = 0.05
@@ -116,12 +123,7 @@ def stops_ms(browser: Browser, folder: Path) -> tuple[list[float], list[float]]:
     braking, holding = [], []
     with Server(folder) as server:
         job = server.planned(arm=ARM)
-        trajectory = folder / "jobs" / job["id"] / job["trajectory"]
-        record = folder / "record.csv"
-        dry = ["--driver", "maestro", "--dry-run", "--quiet", "--record", str(record)]
-        with redirect_stdout(io.StringIO()):
-            assert plan(["run", str(trajectory), *dry]) == 0
-        rows = 4 * np.genfromtxt(record, delimiter=",", skip_header=1)[:, 4:]
+        rows = 4 * np.genfromtxt(_record(folder, job, "maestro"), delimiter=",", skip_header=1)[:, 4:]
         page = browser.new_page()
         page.goto(server.address)
         for number in range(_STOPS):
@@ -140,6 +142,42 @@ def stops_ms(browser: Browser, folder: Path) -> tuple[list[float], list[float]]:
                 server.run("idle")
             holding.append(1000 * (ended_s() - clicked_s))
     return braking, holding
+
+
+def firmware_stops_ms(browser: Browser, folder: Path) -> tuple[list[float], list[float]]:
+    """From a click on stop and on hold to the first pulse that is none of the run's, on the pins of the emulated
+    firmware, in ms."""
+    folder.mkdir()
+    built, channels = build(folder), pulse_calibration(load_arm(_FIRMWARE_ARM)).addresses
+    times: dict[str, list[float]] = {"stop": [], "hold": []}
+    with Server(folder / "house") as server:
+        job = server.planned(arm=_FIRMWARE_ARM)
+        record = _record(folder / "house", job, "native")
+        page = browser.new_page()
+        page.goto(server.address)
+        for number in range(2 * _STOPS):
+            which = ("stop", "hold")[number % 2]
+            (rig := folder / f"rig{number}").mkdir()
+            emulator, line = on_pty(built, rig)
+            with PinClock(emulator.pins) as clock:
+                server.post(f"/api/jobs/{job['id']}/run", {"driver": "native", "port": str(line)})
+                server.until(lambda: server.get("/api/state")["run"], lambda run: run["stroke"] >= 0)
+                time.sleep(0.1 + 0.07 * number)
+                clicked_s = page.evaluate(CLICK, which)
+                server.run("idle")
+            emulator.end()
+            clicked_s = clock.at_s(clicked_s)
+            times[which].append(1000 * (left_at_s(emulator, channels, record, clicked_s) - clicked_s))
+    return times["stop"], times["hold"]
+
+
+def _record(house: Path, job: dict[str, Any], driver: str) -> Path:
+    """What a whole run would tell the servos."""
+    record = house / "record.csv"
+    dry = ["--driver", driver, "--dry-run", "--quiet", "--record", str(record)]
+    with redirect_stdout(io.StringIO()):
+        assert plan(["run", str(house / "jobs" / job["id"] / job["trajectory"]), *dry]) == 0
+    return record
 
 
 def _first_off(model: _Stamped, rows: np.ndarray) -> float:
@@ -297,7 +335,13 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=executable(), args=FLAGS)
         braking, holding = stops_ms(browser, Path(folder) / "stops")
-        for what, times in (("stop, to the first braking set point", braking), ("hold, to its end on sim", holding)):
+        stopped, held = firmware_stops_ms(browser, Path(folder) / "firmware")
+        for what, times in (
+            ("stop, to the first braking set point", braking),
+            ("hold, to its end on sim", holding),
+            ("stop, to the first braking pulse of the emulated firmware", stopped),
+            ("hold, to the first held pulse of the emulated firmware", held),
+        ):
             tell(what, f"{np.median(times):.0f} ms (the longest of {len(times)}: {max(times):.0f} ms)")
         with Server(Path(folder) / "house", "--demo") as server:
             frames, most, work_ms = frames_a_second(browser, server)
