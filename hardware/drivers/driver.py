@@ -75,6 +75,18 @@ class Tally:
 
 
 @runtime_checkable
+class Halting(Driver, Protocol):
+    """A driver with a queue that can brake before what is in it has been played."""
+
+    def halt(self) -> FloatArray:
+        """Brake along the path at once, and forget what was sent and not reached: (n_joints,) where the arm then rests.
+
+        That is at the last set point that was `executed`, or between it and the next. What is sent from now on is
+        counted on from there.
+        """
+
+
+@runtime_checkable
 class Remembering(Driver, Protocol):
     """A driver whose controller goes on counting when its host is lost, and remembers the count."""
 

@@ -18,7 +18,6 @@ from hardware.drivers.streaming.ssc32 import Ssc32
 from hardware.motion.slow_transfer import come_from
 from hardware.port import Line
 from planner.arms.arm import Arm
-from planner.arrays import FloatArray
 from planner.errors import ArmFileError
 
 SIMULATED = "sim"
@@ -63,11 +62,13 @@ def make_driver(name: str, arm: Arm, line: Line, clock: Clock) -> Driver:
         from hardware.drivers.native.driver import NativeDriver
 
         calibration = pulse_calibration(arm)
-
-        def way(pulses_us: FloatArray, pose: FloatArray, rate_hz: float) -> FloatArray:
-            return come_from(arm, calibration.to_joints(pulses_us), pose, rate_hz)
-
         return NativeDriver(
-            lambda: line.open(BAUD), calibration.to_servos, way, calibration.addresses, calibration.ranges, clock
+            lambda: line.open(BAUD),
+            calibration.to_servos,
+            calibration.to_joints,
+            partial(come_from, arm),
+            calibration.addresses,
+            calibration.ranges,
+            clock,
         )
     return StreamingDriver(arm, _STREAMING[name](arm), line, clock)

@@ -34,6 +34,12 @@ class Confirmation:
         self._indices.append((sent, index))
         return strokes
 
+    def cut_short(self, executed: int) -> None:
+        """What was sent after so many is not going to be reached."""
+        for sent in (self._indices, self._strokes):
+            while sent and sent[-1][0] > executed:
+                sent.pop()
+
     def confirm(self, executed: int) -> list[int]:
         """So many of those sent are known to be reached; the strokes that are finished with that."""
         while self._indices and self._indices[0][0] <= executed:

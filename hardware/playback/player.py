@@ -9,7 +9,7 @@ from contextlib import suppress
 import numpy as np
 
 from hardware.clock import Clock
-from hardware.drivers.driver import Driver
+from hardware.drivers.driver import Driver, Halting
 from hardware.motion.slow_transfer import slow_transfer
 from hardware.motion.stopping import brake, lift, lower, set_off
 from hardware.motion.tip import tip_at
@@ -18,6 +18,7 @@ from hardware.playback.observer import Observer, Progress
 from hardware.playback.program import Program
 from hardware.playback.request import Request
 from hardware.playback.result import End, PlaybackResult
+from hardware.playback.sample_map import Piece, piece, sample_after
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.errors import HardwareError, PlanError
@@ -42,9 +43,10 @@ def play(
     """Play `program`: set point k at k / rate after the start, later only by pauses and stalls.
 
     `request()` is asked before every set point. On a pause the arm brakes along the path and lifts the pen straight up;
-    then it lowers the pen where it was and goes on from there. On a stop it brakes, lifts and goes to the park pose. On
-    an emergency stop it holds where it is. `halts` are samples of the trajectory, at rest away from the paper: the arm
-    holds there for as long as `waiting(index of the halt)` is true, which is asked for every set point.
+    then it lowers the pen where it was and goes on from there. On a stop it brakes, where the driver can before it has
+    played its queue, lifts and goes to the park pose. On an emergency stop it holds where it is. `halts` are samples of
+    the trajectory, at rest away from the paper: the arm holds there for as long as `waiting(index of the halt)` is
+    true, which is asked for every set point.
 
     If something other than the arm fails, such as an observer, the arm stops before the error is raised. The driver is
     closed in any case. Errors: HardwareError, and those of observers.
@@ -102,6 +104,7 @@ class _Playing:
         self._begin_s = self._start_s = 0.0
         self._late_s = array("d")
         self._stalls = 0
+        self._course: list[Piece] = []
         self._halts: dict[int, int] = {}
         self._waiting: Callable[[int], bool] = lambda halt: False
 
@@ -140,9 +143,12 @@ class _Playing:
 
     def stop(self) -> None:
         """Brake, lift, park; where no way to the park pose is found the arm holds with its pen up."""
-        if self._parked():
+        if isinstance(self._driver, Halting):
+            self._halt(self._driver)
+        elif self._parked():
             return
-        self._come_to_rest()
+        else:
+            self._come_to_rest()
         self._send_all(lift(self._arm, self._position, self._program.rate_hz))
         try:
             way = slow_transfer(self._arm, self._position, self._program.park, self._program.rate_hz)
@@ -225,8 +231,19 @@ class _Playing:
         self._rested()  # working out the lift now costs nothing but a moment's rest
         return ramp.end
 
+    def _halt(self, driver: Halting) -> None:
+        """Rest before the set points are reached that the driver has been sent."""
+        self._position = driver.halt()
+        self.note_finished()
+        self._sent = driver.executed()
+        self._confirmation.cut_short(self._sent)
+        self._next = self._confirmation.index + 1
+        here = sample_after(self._course, self._sent)
+        self._plan(np.array([self._program.sample[0] if here is None else here]))
+
     def _plan(self, samples: FloatArray) -> None:
         """The set points to be sent next are at these samples (n,) of the trajectory."""
+        self._course.append(piece(self._sent + 1, samples))
         for observer in self._observers:
             observer.planned(self._sent + 1, samples)
 

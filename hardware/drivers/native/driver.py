@@ -26,10 +26,10 @@ _MIDDLE = 1500 * native.UNITS_PER_US
 class NativeDriver:
     """An arm on the firmware of hardware/firmware. See hardware/drivers/driver.py for what the methods promise.
 
-    open_line: opens the line at native.BAUD. pulses_us: positions (n_joints,) to pulses (n_joints,), in chain order.
-    way: way(held_us, pose, rate_hz), positions (n, n_joints) at that rate from where pulses (n_joints,) hold the arm to
-    `pose`. channels: the channel of every joint. ranges_us: (n_joints, 2), the shortest and longest pulse of every
-    joint, which the controller enforces as well.
+    open_line: opens the line at native.BAUD. pulses_us: positions (n_joints,) to pulses (n_joints,), in chain order;
+    positions: the other way round. way: way(held, pose, rate_hz), positions (n, n_joints) at that rate from where the
+    arm is held (n_joints,) to `pose`. channels: the channel of every joint. ranges_us: (n_joints, 2), the shortest and
+    longest pulse of every joint, which the controller enforces as well.
     """
 
     ahead_s = AHEAD_S
@@ -38,12 +38,13 @@ class NativeDriver:
         self,
         open_line: Callable[[], Transport],
         pulses_us: Callable[[FloatArray], FloatArray],
+        positions: Callable[[FloatArray], FloatArray],
         way: Callable[[FloatArray, FloatArray, float], FloatArray],
         channels: Sequence[int],
         ranges_us: FloatArray,
         clock: Clock,
     ) -> None:
-        self._pulses_us, self._way = pulses_us, way
+        self._pulses_us, self._positions, self._way = pulses_us, positions, way
         self._channels, self._ranges_us = tuple(channels), ranges_us
         self._queue = Queue()
         self._session = Session(open_line, self._queue, clock)
@@ -89,6 +90,11 @@ class NativeDriver:
         while not self._is_at_rest():
             self._play()
             self._session.exchange()
+
+    def halt(self) -> FloatArray:
+        self._session.halt()
+        self._queue.cut_short(self._session.status.free, self._session.status.reached)
+        return self._held()
 
     def emergency_stop(self) -> None:
         if self._session.is_open and not self._session.is_stopped:
@@ -144,21 +150,21 @@ class NativeDriver:
         while self._session.status.state is State.ARMING:
             self._session.exchange()
         self._session.introduce()  # once more: now it tells the pulses of all servos, which are at rest
-        held_us = self._held_us()
+        held = self._held()
         self._restart()
-        for positions in self._way(held_us, pose, _RETURN_HZ):
+        for positions in self._way(held, pose, _RETURN_HZ):
             self.send(positions, 1 / _RETURN_HZ)
         self.flush()
         self._queue.count_from_here()
 
-    def _held_us(self) -> FloatArray:
-        """(n_joints,) pulses that the controller holds the servos with."""
+    def _held(self) -> FloatArray:
+        """(n_joints,) where the controller holds the arm."""
         pulses = self._session.info.pulses
         if len(pulses) <= max(self._channels):
             raise HardwareError(
                 "the controller does not tell the pulses of its servos: flash the firmware that belongs to this program"
             )
-        return np.array([pulses[channel] for channel in self._channels]) / native.UNITS_PER_US
+        return self._positions(np.array([pulses[channel] for channel in self._channels]) / native.UNITS_PER_US)
 
     def _on_channels(self, positions: FloatArray) -> tuple[int, ...]:
         """Pulses in 1/16 us by channel; a channel without a joint gets the middle."""

@@ -44,6 +44,12 @@ class Queue:
         """Set points count from 0 again. All that were added have to be reached."""
         self._added = self.executed = 0
 
+    def cut_short(self, free: int, reached: int) -> None:
+        """As `restart`, in the midst of a run: what is added next comes after what was executed."""
+        executed = self.executed
+        self.restart(free, reached)
+        self._added = self.executed = executed
+
     @property
     def counts(self) -> Counts:
         """What the link has sent, over all restarts."""

@@ -21,6 +21,8 @@ _POLL_BYTES = 16
 _ASK_S = 0.1
 """Without other traffic the controller is asked for its status so often; an order is repeated as often."""
 _URGENT_S = 0.02
+_BRAKES_S = 0.25
+"""The time scale ramps down in 0.2 s; then all servos are told, and the controller counts what they were told."""
 _UNANSWERED = 20
 """Questions without an answer after which nobody is there. Counted, since a host that was paused cannot trust time."""
 _BOOT_ATTEMPTS = 50
@@ -149,6 +151,16 @@ class Session:
         """Stop at once. The fault that this leaves the controller in is no error."""
         self.is_stopped = True
         self.command(Order.STOP, every_s=_URGENT_S)
+
+    def halt(self) -> None:
+        """Brake along the path, and forget what is queued. Returns once the arm stands and the controller has said how
+        far it came, and with which pulses it holds."""
+        if self.attempt(Order.HOLD, every_s=_URGENT_S) is Result.DONE:  # else it stands already
+            end_s = self._clock.now_s() + _BRAKES_S
+            while self._clock.now_s() < end_s:
+                self.exchange()
+        self.command(Order.CLEAR)
+        self.introduce()
 
     def command(self, kind: Order, encode: Callable[[int], bytes] | None = None, every_s: float = _ASK_S) -> None:
         """Give an order that has to be obeyed."""

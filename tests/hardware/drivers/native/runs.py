@@ -22,13 +22,17 @@ def pulses_us(positions: FloatArray) -> FloatArray:
     return 1500.0 + 10.0 * positions
 
 
-def _slow_way(held_us: FloatArray, pose: FloatArray, rate_hz: float) -> FloatArray:
-    held = (held_us - 1500.0) / 10.0
+def _positions(pulses_us: FloatArray) -> FloatArray:
+    return (pulses_us - 1500.0) / 10.0
+
+
+def _slow_way(held: FloatArray, pose: FloatArray, rate_hz: float) -> FloatArray:
     return held + np.linspace(0.0, 1.0, round(2.0 * rate_hz))[1:, None] * (pose - held)
 
 
 def driver_on(line: Transport, clock: Clock) -> NativeDriver:
-    return NativeDriver(lambda: line, pulses_us, _slow_way, range(JOINTS), np.tile(RANGE_US, (JOINTS, 1)), clock)
+    ranges_us = np.tile(RANGE_US, (JOINTS, 1))
+    return NativeDriver(lambda: line, pulses_us, _positions, _slow_way, range(JOINTS), ranges_us, clock)
 
 
 def waves(duration_s: float) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -63,20 +64,25 @@ def _drawing_error(emulator: Emulator, trajectory: Trajectory) -> DrawingErrors:
     return drawing_error(drawn_lines(ARM, _on_pins(emulator)), wanted)
 
 
+def _driver(controller: LockStep) -> NativeDriver:
+    calibration = pulse_calibration(ARM)
+    return NativeDriver(
+        lambda: controller,
+        calibration.to_servos,
+        calibration.to_joints,
+        partial(come_from, ARM),
+        calibration.addresses,
+        calibration.ranges,
+        controller,
+    )
+
+
 @pytest.mark.parametrize("rests", [0, 70])
 def test_what_the_pins_draw_is_the_drawing_paused_or_not(
     lock_step: Callable[[Faults], LockStep], drawing: Path, trajectory: Trajectory, rests: int
 ) -> None:
     controller = lock_step(Faults(flip=0.001, drop=0.001))
-    calibration = pulse_calibration(ARM)
-    driver = NativeDriver(
-        lambda: controller,
-        calibration.to_servos,
-        lambda held_us, pose, rate_hz: come_from(ARM, calibration.to_joints(held_us), pose, rate_hz),
-        calibration.addresses,
-        calibration.ranges,
-        controller,
-    )
+    driver = _driver(controller)
     program = make_program(ARM, set_points(trajectory, ARM, drawing), trajectory.stroke, trajectory.rate_hz)
     requests = iter([*[Request.GO] * 160, *[Request.PAUSE] * rests])
 
@@ -88,3 +94,42 @@ def test_what_the_pins_draw_is_the_drawing_paused_or_not(
     found = _drawing_error(controller.emulator, trajectory)
     assert found.most_mm < 0.1
     assert found.largest_mm < 0.2  # half-microseconds of five joints at once, and straight lines over 20 ms
+
+
+@pytest.mark.parametrize("stroke", [0, 1])
+@pytest.mark.parametrize("faults", [Faults(), Faults(flip=0.001, drop=0.001)])
+def test_a_stop_brakes_at_once_and_not_where_the_queue_ends(
+    lock_step: Callable[[Faults], LockStep], drawing: Path, trajectory: Trajectory, stroke: int, faults: Faults
+) -> None:
+    controller = lock_step(faults)
+    driver = _driver(controller)
+    program = make_program(ARM, set_points(trajectory, ARM, drawing), trajectory.stroke, trajectory.rate_hz)
+    begins, ends = np.flatnonzero(program.stroke == stroke)[[0, -1]]
+    asked_s, asked_at = list[float](), list[int]()
+    left_at = list[float]()
+
+    def wishes() -> Request:
+        if driver.executed() < (begins + ends) // 2:
+            return Request.GO
+        asked_s.append(controller.now_s())
+        asked_at.append(driver.executed())
+        return Request.STOP
+
+    class Left(Observed):
+        def planned(self, first: int, samples: FloatArray) -> None:
+            left_at.append(float(samples[0]))
+
+    observed = Left()
+    played = play(program, ARM, driver, controller, request=wishes, observers=[observed])
+    controller.sleep_until(controller.now_s() + 0.1)
+    assert (played.end, played.parked) == (End.STOPPED, True)
+    assert observed.strokes_finished == list(range(stroke))
+    tips_mm = link_nodes_mm(ARM, _on_pins(controller.emulator))[:, -1]
+    assert np.linalg.norm(tips_mm[-1] - link_nodes_mm(ARM, program.park[None])[0, -1]) < 0.2
+    # The time scale ramps down in 0.2 s: half of that is drawn, at most, beside what pulses take to be told of.
+    last_ink = drawn_lines(ARM, _on_pins(controller.emulator))[-1][-1]
+    sample = round(left_at[-1])
+    drawn_s = (sample - program.sample[asked_at[0]]) / program.rate_hz
+    assert 0.05 < drawn_s < 0.2
+    left_mm = link_nodes_mm(ARM, ARM.from_file_units(trajectory.positions[sample : sample + 2]))[:, -1, :2]
+    assert np.linalg.norm(last_ink - left_mm, axis=1).min() < 0.2 + np.linalg.norm(np.diff(left_mm, axis=0))

@@ -221,7 +221,8 @@ def test_any_number_of_joints(controller: LockStep, joints: int) -> None:
     driver = NativeDriver(
         lambda: controller,
         lambda positions: 1000.0 + positions,
-        lambda held_us, pose, _: pose[None],
+        lambda pulses_us: pulses_us - 1000.0,
+        lambda held, pose, _: pose[None],
         range(joints),
         np.tile((600.0, 2400.0), (joints, 1)),
         controller,
