@@ -13,6 +13,8 @@ from planner.arrays import BoolArray, FloatArray
 
 _CELL_MM = 0.1
 _FINE_MM = 0.01
+_SKIPPED_MM = 2.0
+"""Ink that goes round a corner is not nearest to the corner itself."""
 _ENDS_MM = 0.15
 """Ends of lines may be so much short: a pen comes down on a spot, and pulses are half microseconds."""
 
@@ -42,7 +44,10 @@ def coverage(drawn: Sequence[FloatArray], wanted: Sequence[FloatArray]) -> Cover
         touched = np.zeros_like(there)
         for one in np.unique(owner[nearest]):
             cells = nearest[owner[nearest] == one]
-            touched[cells.min() : cells.max() + 1] = True
+            touched[cells] = True
+            for low, high in np.sort(np.column_stack((cells[:-1], cells[1:])), axis=1):
+                if high - low <= _SKIPPED_MM / _CELL_MM:  # else from the end of a closed line to its beginning
+                    touched[low:high] = True
         again_mm.append(_CELL_MM * float((touched & there).sum()))
         there |= touched
     missing = ~there
