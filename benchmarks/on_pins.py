@@ -12,7 +12,7 @@ import numpy as np
 from planner.arrays import FloatArray
 from tests.hardware.emulator.emulator import CYCLES_PER_S, Emulator, Pulses
 
-_LOOK_S = 0.002
+_LOOK_S, _NEAR_S = 0.002, 0.1
 _CHANGE = 16
 """Bytes of a record of the pins."""
 _MOVED_US = 1.0
@@ -41,7 +41,7 @@ class PinClock:
     def at_s(self, wall_s: float) -> float:
         """The latest that the controller may have had at that time."""
         walls, controllers = np.array(self._seen).T
-        near = np.abs(walls - wall_s) < 1.0
+        near = np.abs(walls - wall_s) < _NEAR_S
         return wall_s + float((controllers - walls)[near].max())
 
     def _look(self) -> None:
