@@ -245,9 +245,10 @@ async def _body(request: Request, most: int) -> bytes:
 
 
 async def _asked(request: Request) -> dict[str, Any]:
-    """Errors: UsageError where it is no JSON object."""
+    """Errors: UsageError where it is no JSON object, or one that could not be told to other pages."""
     try:
         asked = json.loads(await _body(request, _MOST_ASKED) or b"{}")
+        json.dumps(asked, ensure_ascii=False, allow_nan=False).encode()
     except (ValueError, RecursionError):
         asked = None
     if not isinstance(asked, dict):

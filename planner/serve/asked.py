@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 from planner.cli.plan import plan_parser
@@ -31,6 +33,8 @@ def arguments_of(asked: Mapping[str, Any], arm_word: Callable[[object], str]) ->
         if value is None or value is False or value == "":
             continue
         if name in _SWITCHES:
+            if value is not True:
+                raise UsageError(f"{name} is on or off, not {value!r:.40}")
             words.append(f"--{name}")
         elif name in _PAIRS:
             words += [f"--{name}", *_numbers(name, value)]
@@ -52,22 +56,33 @@ def port_words(asked: Mapping[str, Any]) -> list[str]:
     port = asked.get("port")
     if not port:
         return []
-    if not isinstance(port, str) or len(port) > _LONGEST:
+    if not isinstance(port, str) or not is_word(port):
         raise UsageError("port is the name of a serial port")
     return [f"--port={port}"]
 
 
+def is_word(text: str) -> bool:
+    """Whether a command can be given it, and a page be told: not too long, all of it characters, and none the end of a
+    word to the system."""
+    return len(text) <= _LONGEST and "\0" not in text and not any("\ud800" <= sign <= "\udfff" for sign in text)
+
+
+def number_of(name: str, value: object) -> float:
+    """Errors: UsageError for what is no finite number."""
+    if not isinstance(value, bool) and isinstance(value, int | float):
+        with suppress(OverflowError):
+            if math.isfinite(number := float(value)):
+                return number
+    raise UsageError(f"{name} is a number")
+
+
 def _word(name: str, value: object) -> str:
-    if isinstance(value, bool) or not isinstance(value, str | int | float) or len(str(value)) > _LONGEST:
+    if isinstance(value, bool) or not isinstance(value, str | int | float) or not is_word(str(value)):
         raise UsageError(f"{name} is a text or a number, not {value!r:.40}")
     return str(value)
 
 
 def _numbers(name: str, value: object) -> list[str]:
-    if (
-        not isinstance(value, list)
-        or len(value) != 2
-        or not all(isinstance(number, int | float) and not isinstance(number, bool) for number in value)
-    ):
+    if not isinstance(value, list) or len(value) != 2:
         raise UsageError(f"{name} is two numbers, not {value!r:.40}")
-    return [f"{number:.6f}".rstrip("0").rstrip(".") for number in value]
+    return [f"{number_of(f'each number of {name}', number):.6f}".rstrip("0").rstrip(".") for number in value]

@@ -16,6 +16,7 @@ from typing import IO, Any, cast
 from planner.errors import OutputError, UsageError
 from planner.files import written_aside
 from planner.serve.arms import Arms
+from planner.serve.asked import is_word
 from planner.serve.child import Child, error_of, listen, start
 from planner.serve.run import Playable
 
@@ -95,6 +96,8 @@ class Calibration:
         suffix = Path(name).suffix.lower()
         if suffix not in PHOTOS:
             raise UsageError(f"'{name:.60}' is not a photo: its name should end in {', '.join(PHOTOS)}")
+        if not is_word(bar):
+            raise UsageError("bar is how long its bars are by a ruler, in mm")
         self._refuse_while_busy()
         if not self._has(_RECORD):
             raise UsageError("the pattern is not drawn yet")
@@ -105,7 +108,7 @@ class Calibration:
             raise OutputError(photo, error.strerror or str(error)) from error
         words = ["measure", photo, "--marks", _MARKS, "-o", _MEASURED, "--picture", READING]
         self._forget(_MEASURED, READING, _FOUND)
-        self._work("measure", [*words, *([f"--bar={bar:.40}"] if bar else [])])
+        self._work("measure", [*words, *([f"--bar={bar}"] if bar else [])])
 
     def calibrate(self, asked: Mapping[str, Any]) -> None:
         """Find out how the arm is, and save it under a name. Errors: UsageError."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import math
 import shlex
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -15,7 +14,7 @@ from typing import Any
 from hardware.drivers.table import MUJOCO
 from planner.errors import UsageError
 from planner.serve.arms import Arms
-from planner.serve.asked import port_words
+from planner.serve.asked import number_of, port_words
 from planner.serve.child import Child, error_of, follow, start
 from planner.serve.turn import Turn
 
@@ -177,6 +176,4 @@ def _lines_of(asked: Mapping[str, Any], joints: Sequence[str]) -> list[str]:
         return [*lines, str(command)]
     if command not in _WITH_NUMBER:
         raise UsageError(f"there is no command '{command!s:.40}' here")
-    if isinstance(number, bool) or not isinstance(number, int | float) or not math.isfinite(number):
-        raise UsageError(f"{command} takes a number")
-    return [*lines, f"{command} {number:.6f}"]
+    return [*lines, f"{command} {number_of(f'that of {command}', number):.6f}"]

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from planner.errors import UsageError
-from planner.serve.asked import port_words
+from planner.serve.asked import number_of, port_words
 from planner.serve.child import Child, error_of, follow, start
 from planner.serve.turn import Turn
 
@@ -137,9 +137,7 @@ class Arm:
         words = [f"--driver={driver}", *port_words(asked)]
         factor = asked.get("speed-factor")
         if factor is not None:
-            if isinstance(factor, bool) or not isinstance(factor, int | float):
-                raise UsageError("speed-factor is a number")
-            words.append(f"--speed-factor={factor:g}")
+            words.append(f"--speed-factor={number_of('speed-factor', factor):g}")
         words += [f"--{name}" for name in ("resume", "frame", "fast") if asked.get(name) is True]
         return words
 

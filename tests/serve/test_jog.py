@@ -87,6 +87,7 @@ def test_a_run_and_jogging_keep_out_of_each_others_way(server: Server) -> None:
         ({"arm": "so101"}, "letters"),
         ({"arm": "so101", "target": "x", "driver": "maestro"}, "no driver"),
         ({"arm": "so101", "target": "x", "port": 3}, "port"),
+        ({"arm": "so101", "target": "x", "port": "a\0b"}, "port"),
     ],
 )
 def test_what_means_nothing_is_refused(server: Server, asked: object, word: str) -> None:
@@ -94,9 +95,17 @@ def test_what_means_nothing_is_refused(server: Server, asked: object, word: str)
 
 
 @pytest.mark.parametrize(
-    "asked", [{}, {"command": "explode"}, {"command": "move"}, {"command": "move", "number": True}, {"command": "low"},
-              {"command": "move", "number": 1, "joint": "q1\nsave"}],
-)  # fmt: skip
+    "asked",
+    [
+        {},
+        {"command": "explode"},
+        {"command": "move"},
+        {"command": "move", "number": True},
+        {"command": "move", "number": 10**400},
+        {"command": "low"},
+        {"command": "move", "number": 1, "joint": "q1\nsave"},
+    ],
+)
 def test_commands_that_mean_nothing_or_come_too_early_are_refused(server: Server, asked: object) -> None:
     status, _, body = server.answer(
         "POST", "/api/jog/do", json.dumps(asked).encode(), {"Content-Type": "application/json"}

@@ -65,6 +65,12 @@ def test_a_drawing_that_cannot_be_drawn_says_why(server: Server) -> None:
         ({"rotate": {"a": 1}}, "rotate"),
         ({"at": [1]}, "at"),
         ({"tolerance": -1}, "tolerance"),
+        ({"at": [10**400, 0]}, "number"),
+        ({"layers": "a\0b"}, "layers"),
+        ({"layers": "\ud800"}, "JSON"),
+        ({"mirror": "\ud800"}, "JSON"),
+        ({"mirror": float("nan")}, "JSON"),
+        ({"mirror": "x" * 1000}, "mirror"),
         ([1], "JSON"),
     ],
 )
@@ -105,6 +111,23 @@ def test_a_run_pauses_goes_on_and_stops_and_another_resumes_it(server: Server) -
     assert run["ended"] == "played" and run["complete"]
     assert not server.job(job["id"])["resumable"]
     assert server.job(job["id"])["drawn"] == ["stopped", "played"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "word"),
+    [
+        ({"port": "a\0b"}, "port"),
+        ({"port": "\ud800"}, "JSON"),
+        ({"port": "x" * 1000}, "port"),
+        ({"speed-factor": float("inf")}, "JSON"),
+        ({"speed-factor": 10**400}, "speed-factor"),
+        ({"driver": ["sim"]}, "driver"),
+    ],
+)
+def test_runs_that_mean_nothing_are_refused(server: Server, asked: object, word: str) -> None:
+    job = server.planned()
+    assert word in server.post(f"/api/jobs/{job['id']}/run", asked, status=400)["error"]
+    assert server.get("/api/state")["run"]["stand"] == "idle"
 
 
 def test_hold_holds_at_once(server: Server) -> None:
