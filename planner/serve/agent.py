@@ -79,8 +79,7 @@ class _Tools:
         """Plan a drawing. svg: the text of the file. options: as of the command line without dashes, such as
         {"arm": "so101", "scale": 0.5, "fill": "hatch", "by": "colour", "tolerance": 0.1}. Answers with the job's id, a
         summary, warnings, and the same as a command."""
-        job = self._house.store.add(name, svg.encode())
-        self._house.planning.read(job)
+        job = self._house.add(name, svg.encode())
         await self._settled(job)
         if job.state is State.FAILED:
             raise UsageError(job.error)

@@ -110,8 +110,7 @@ class _Pages:
         content = await _body(request, MOST_BYTES)
         if not content:
             raise UsageError("the drawing is empty")
-        job = self._house.store.add(request.query_params.get("name", ""), content)
-        self._house.planning.read(job)
+        job = self._house.add(request.query_params.get("name", ""), content)
         return JSONResponse(self._house.job_state(job), 201)
 
     async def remove(self, request: Request) -> Response:

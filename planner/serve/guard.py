@@ -32,6 +32,8 @@ class Guard:
         if scope["type"] != "http":
             if scope["type"] == "lifespan":
                 await self._app(scope, receive, send)
+            else:  # nothing here speaks by web sockets
+                await send({"type": "websocket.close"})
             return
 
         async def send_guarded(message: Message) -> None:

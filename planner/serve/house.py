@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from planner.serve.run import Arm, Playable
 from planner.serve.store import Job, State, Store
 from planner.serve.turn import Turn
 
+MOST_JOBS = 200
 _MOST_RUNS = 20
 """Whose ends are kept of a job."""
 
@@ -62,6 +64,16 @@ class House:
             return self.job_state(job) if known else {"id": job.id, "gone": True}
 
         self.feed.changed(f"job {job.id}", state)
+
+    def add(self, name: str, content: bytes) -> Job:
+        """A new drawing, that is going to be read, in the place of the oldest where there are too many: but what is
+        drawn stays. Errors: UsageError for what is no drawing by its name, OutputError."""
+        job = self.store.add(name, content)
+        for oldest in list(self.store)[:-MOST_JOBS]:
+            with suppress(UsageError):
+                self.remove(oldest)
+        self.planning.read(job)
+        return job
 
     def remove(self, job: Job) -> None:
         """Errors: UsageError while it is being drawn."""

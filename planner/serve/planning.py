@@ -15,6 +15,9 @@ LINES = "lines.json"
 MOTION = "motion.json"
 
 
+Work = Callable[[], Coroutine[Any, Any, None]]
+
+
 class Planning:
     """The work on jobs. changed: called with each job that has changed."""
 
@@ -26,14 +29,14 @@ class Planning:
 
     def read(self, job: Job) -> None:
         """Begin to read a new drawing."""
-        self._begin(job, State.READING, self._read(job))
+        self._begin(job, State.READING, lambda: self._read(job))
 
     def plan(self, job: Job, asked: Mapping[str, Any]) -> None:
         """Begin to plan, in the place of what was being done with the job. Errors: UsageError for options that mean
         nothing."""
         words = arguments_of(asked, self._arms.word)
         job.options, job.command = dict(asked), command_of(job.name, job.trajectory_name, words)
-        self._begin(job, State.PLANNING, self._plan(job, words))
+        self._begin(job, State.PLANNING, lambda: self._plan(job, words))
 
     def cancel(self, job: Job) -> None:
         """Leave it; what had been planned before is kept."""
@@ -47,26 +50,25 @@ class Planning:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
 
-    def _begin(self, job: Job, state: State, work: Coroutine[Any, Any, None]) -> None:
+    def _begin(self, job: Job, state: State, work: Work) -> None:
         self.cancel(job)
         before = self._tasks.get(job.id)
         job.state, job.error, job.progress, job.stage = state, "", 0.0, ""
         self._tasks[job.id] = asyncio.get_running_loop().create_task(self._in_turn(job, work, before))
         self._changed(job)
 
-    async def _in_turn(self, job: Job, work: Coroutine[Any, Any, None], before: asyncio.Task[None] | None) -> None:
+    async def _in_turn(self, job: Job, work: Work, before: asyncio.Task[None] | None) -> None:
         try:
             if before is not None:
                 await asyncio.wait([before])
             async with self._turn:
-                await work
+                await work()
         except asyncio.CancelledError:
             if self._tasks.get(job.id) is asyncio.current_task():  # else the next work on it has begun
                 job.state = State.READ if (self._store.of(job) / LINES).exists() else State.FAILED
                 job.error = "cancelled"
             raise
         finally:
-            work.close()
             child = self._children.pop(job.id, None)
             if child is not None and child.process.returncode is None:
                 await child.end()

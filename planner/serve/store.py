@@ -20,7 +20,8 @@ from planner.files import written_aside
 _JOB = "job.json"
 _ID = re.compile(r"[0-9a-f]{16}")
 _LONGEST_NAME = 60
-MOST_JOBS = 200
+_MOST_NAME_BYTES = 200
+"""Names of files may have 255 on most systems, and those of journals are longer than their drawing's."""
 SUFFIXES = (".svg", ".svgz", ".png", ".jpg", ".jpeg")
 
 
@@ -90,8 +91,6 @@ class Store:
     def add(self, name: str, content: bytes) -> Job:
         """A new job. Errors: UsageError for what is no drawing by its name, OutputError."""
         job = Job(secrets.token_hex(8), safe_name(name), time.time())
-        while len(self._jobs) >= MOST_JOBS:
-            self.remove(next(iter(self._jobs.values())))
         try:
             self.of(job).mkdir()
             (self.of(job) / job.name).write_bytes(content)
@@ -134,4 +133,5 @@ def safe_name(name: str) -> str:
     if f"{dot}{suffix.lower()}" not in SUFFIXES:
         raise UsageError(f"'{last[:_LONGEST_NAME]}' is not a drawing: its name should end in {', '.join(SUFFIXES)}")
     cleaned = re.sub(r"[^\w-]+", "-", stem).strip("-_")[:_LONGEST_NAME] or "drawing"
+    cleaned = cleaned.encode()[:_MOST_NAME_BYTES].decode(errors="ignore")
     return f"{cleaned}.{suffix.lower()}"

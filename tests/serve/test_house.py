@@ -1,0 +1,38 @@
+"""What the server keeps, where there is too much of it."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+import pytest
+
+from planner.serve import house as houses
+from planner.serve.house import House
+from planner.serve.run import Playable
+from planner.serve.store import safe_name
+from tests.serve.served import SQUARE
+
+
+def test_the_oldest_drawings_make_room_but_not_what_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(houses, "MOST_JOBS", 2)
+
+    async def add() -> None:
+        house = House(tmp_path)
+        drawn, second = house.add("drawn.svg", SQUARE), house.add("second.svg", SQUARE)
+        house.arm.begin(
+            Playable(drawn.id, drawn.name, house.store.of(drawn), "none.csv", lambda how, complete: None), {}
+        )
+        later = [house.add(f"later{number}.svg", SQUARE) for number in range(3)]
+        assert [job.id for job in house.store] == [drawn.id, *(job.id for job in later[1:])]
+        assert house.store.of(drawn).exists() and not house.store.of(second).exists()
+        await house.close()
+
+    asyncio.run(add())
+
+
+@pytest.mark.parametrize("letter", ["a", "\u00e9", "\u6f22", "\U0001d49c"])
+def test_files_beside_a_drawing_can_be_named_after_it(letter: str, tmp_path: Path) -> None:
+    name = safe_name(f"{letter * 300}.svg")
+    assert name.startswith(letter)
+    (tmp_path / f"{Path(name).stem}.csv.sim.journal.lock").touch()
