@@ -212,7 +212,9 @@ class _NotFound(Exception):
 
 
 class _TooLarge(Exception):
-    pass
+    def __init__(self, most: int) -> None:
+        super().__init__()
+        self.most = most
 
 
 def _plainly(answer: Answer) -> Answer:
@@ -223,8 +225,8 @@ def _plainly(answer: Answer) -> Answer:
             return await answer(request)
         except _NotFound:
             return JSONResponse({"error": "there is no such thing here any more"}, 404)
-        except _TooLarge:
-            return JSONResponse({"error": f"that is more than {MOST_BYTES >> 20} MB"}, 413)
+        except _TooLarge as error:
+            return JSONResponse({"error": f"that is more than {error.most / 2**20:g} MB"}, 413)
         except ClientDisconnect:
             return Response(status_code=400)
         except PlannerError as error:
@@ -239,7 +241,7 @@ async def _body(request: Request, most: int) -> bytes:
     async for chunk in request.stream():
         content += chunk
         if len(content) > most:
-            raise _TooLarge
+            raise _TooLarge(most)
     return bytes(content)
 
 

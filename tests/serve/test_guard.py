@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import asyncio
+import hmac
 import socket
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from starlette.routing import Route
 
+from planner.serve.app import application
+from planner.serve.guard import Guard
+from planner.serve.house import House
 from tests.serve.served import SQUARE, Server
 
 JSON = {"Content-Type": "application/json"}
@@ -54,11 +61,41 @@ def test_forms_change_nothing(server: Server, kind: str) -> None:
     assert server.answer("POST", "/api/jobs?name=a.svg", SQUARE, {"Content-Type": kind})[0] == 415
 
 
-def test_asking_by_get_changes_nothing(server: Server) -> None:
-    job = server.upload()
-    for path in ("plan", "run", "cancel"):
-        assert server.answer("GET", f"/api/jobs/{job['id']}/{path}")[0] in (404, 405)
+READ = {
+    "/",
+    "/api/state",
+    "/api/events",
+    "/api/ports",
+    "/api/arms/{name}",
+    "/api/jobs/{id}/lines",
+    "/api/jobs/{id}/motion",
+    "/api/jobs/{id}/trajectory",
+    "/api/calibration/sheet",
+    "/api/calibration/reading",
+}
+
+
+def test_asking_by_get_changes_nothing(tmp_path: Path, server: Server) -> None:
+    routes = [route for route in application(House(tmp_path), frozenset(), None).routes if isinstance(route, Route)]
+    for route in routes:
+        assert route.methods in ({"GET", "HEAD"}, {"POST"}, {"DELETE"}), route
+    assert {route.path for route in routes if route.methods == {"GET", "HEAD"}} == READ
     assert server.answer("GET", "/api/run/stop")[0] == 405
+
+
+@pytest.mark.parametrize("path", ["/", "/static/app.js", "/api/state", "/api/nothing", "/api/run/stop"])
+@pytest.mark.parametrize("host", ["localhost", "evil.example"])
+def test_every_answer_tells_browsers_to_load_and_frame_nothing_of_others(server: Server, path: str, host: str) -> None:
+    headers = server.answer("GET", path, headers={"Host": host})[1]
+    policy = dict(rule.split(" ", 1) for rule in headers["content-security-policy"].split("; "))
+    assert policy.pop("img-src") == "'self' data: blob:"
+    for rule in ("default-src", "form-action", "base-uri", "frame-ancestors"):
+        assert policy.pop(rule) == "'none'"
+    assert set(policy.values()) == {"'self'"}
+    assert headers["x-content-type-options"] == "nosniff" and headers["referrer-policy"] == "no-referrer"
+    for who in ("opener", "resource"):
+        assert headers[f"cross-origin-{who}-policy"] == "same-origin"
+    assert headers["cache-control"] == "no-store"
 
 
 @pytest.mark.parametrize(
@@ -130,6 +167,40 @@ def test_a_token_is_asked_for_where_others_can_reach_the_page(tmp_path: Path) ->
         assert "HttpOnly" in cookie and "samesite=strict" in cookie.lower()
         for headers in ({"Cookie": cookie.split(";")[0]}, {"Authorization": "Bearer correct-horse"}):
             assert server.answer("GET", "/api/state", headers=headers)[0] == 200
+
+
+def test_a_token_is_compared_in_constant_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    compared = list[tuple[bytes, bytes]]()
+
+    def compare(given: bytes, wanted: bytes) -> bool:
+        compared.append((given, wanted))
+        return given == wanted
+
+    monkeypatch.setattr(hmac, "compare_digest", compare)
+    told = list[Any]()
+
+    async def send(message: Any) -> None:
+        told.append(message)
+
+    async def receive() -> Any:
+        raise AssertionError
+
+    headers = [(b"host", b"localhost"), (b"authorization", b"Bearer correct-hors")]
+    scope = {"type": "http", "method": "GET", "path": "/", "query_string": b"", "headers": headers}
+    guarded = Guard(application(House(tmp_path), frozenset(), None), frozenset({"localhost"}), "correct-horse")
+    asyncio.run(guarded(scope, receive, send))
+    assert told[0]["status"] == 401 and (b"correct-hors", b"correct-horse") in compared
+
+
+def test_nothing_speaks_by_web_sockets(server: Server) -> None:
+    asks = {"Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "eA=="}
+    assert server.answer("GET", "/api/state", headers=asks)[0] in (200, 400, 403)
+
+
+def test_options_are_bounded(server: Server) -> None:
+    body = b'{"layers": "' + b"x" * (1 << 20) + b'"}'
+    assert server.answer("POST", "/api/jobs/0123456789abcdef/plan", body, JSON)[0] == 404
+    assert server.answer("POST", f"/api/jobs/{server.upload()['id']}/plan", body, JSON)[0] == 413
 
 
 def test_other_machines_cannot_reach_it_unless_asked(server: Server) -> None:
