@@ -9,11 +9,13 @@ import pty
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import pytest
 from mcp import ClientSession, StdioServerParameters, stdio_client
 
+from tests.hardware.controllers.lines import pty_line
+from tests.hardware.controllers.maestro import MaestroModel
 from tests.serve.served import SQUARE
 
 
@@ -62,6 +64,39 @@ def test_an_agent_plans_looks_checks_and_runs_on_the_simulated_arm_alone(tmp_pat
     asyncio.run(asyncio.wait_for(_draws(tmp_path), 240))
 
 
+async def _asks_for_a_real_arm(folder: Path, port: str, terminal: int, errlog: TextIO) -> list[Any]:
+    """How a run ended that was refused, one that was let, and what the second came to."""
+    arguments = ["-m", "planner", "mcp", "--real-arm", "--folder", str(folder)]
+    server = StdioServerParameters(command=sys.executable, args=arguments)
+    async with stdio_client(server, errlog=errlog) as (read, write), ClientSession(read, write) as session:
+        await session.initialize()
+        job = json.loads(text(await call(session, "plan", svg=SQUARE.decode(), options={"scale": 0.3})))["job"]
+        answers = []
+        for typed in (b"n\n", b"y\n"):
+            os.write(terminal, b"y\n")  # before it is asked: that is no answer
+            asking = asyncio.create_task(call(session, "run", job=job, driver="maestro", port=port))
+            said = b""
+            while b"type y" not in said:
+                said += await asyncio.to_thread(os.read, terminal, 1000)
+            os.write(terminal, typed)
+            answers.append(await asking)
+        while json.loads(text(run := await call(session, "status")))["stand"] != "idle":
+            await asyncio.sleep(0.1)
+        return [*answers, run]
+
+
+def test_a_real_arm_moves_once_a_person_has_pressed_a_key(tmp_path: Path) -> None:
+    model = MaestroModel()
+    terminal, other_end = pty.openpty()
+    with pty_line(model) as line, os.fdopen(other_end, "w") as errlog:
+        asked = _asks_for_a_real_arm(tmp_path, line.name, terminal, errlog)
+        refused, let, run = asyncio.run(asyncio.wait_for(asked, 240))
+    os.close(terminal)
+    assert refused.is_error and "agreed" in text(refused)
+    assert not let.is_error and json.loads(text(run))["complete"], run
+    assert len(model.positions) == 5
+
+
 AGREES = """
 import asyncio, sys
 from planner.serve.person import agrees
@@ -83,5 +118,5 @@ def test_a_person_at_the_terminal_has_to_agree(typed: bytes, agreed: bool) -> No
 
 
 def test_nobody_agrees_where_there_is_no_terminal() -> None:
-    ran = subprocess.run([sys.executable, "-c", AGREES], start_new_session=True, stdin=subprocess.DEVNULL)
+    ran = subprocess.run([sys.executable, "-c", AGREES], start_new_session=True, capture_output=True)
     assert ran.returncode == 1
