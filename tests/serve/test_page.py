@@ -8,6 +8,7 @@ import os
 import re
 from collections.abc import Iterator
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,9 @@ from PIL import Image
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from benchmarks.browser.chromium import executable
+from planner.cli import main as command
+from planner.serve.asked import arguments_of
+from planner.trajectory import read_trajectory
 from tests.serve.served import PAGE, SQUARE, Server
 
 TWO_PENS = (
@@ -170,19 +174,23 @@ PLACES: list[tuple[bool, dict[str, Any]]] = [
 ]
 
 
-def test_the_sheet_shows_where_the_planner_puts_a_drawing(page: Page, server: Server) -> None:
+def test_the_sheet_shows_where_the_planner_puts_a_drawing(
+    page: Page, server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    keys: dict[bool, str] = {}
+    for has_page in (True, False):
+        content = SQUARE if has_page else SQUARE.replace(PAGE.encode(), b"")
+        Path(f"{has_page}.svg").write_bytes(content)
+        keys[has_page] = server.upload(content)["id"]
     for has_page, options in PLACES:
-        job = server.upload(SQUARE if has_page else SQUARE.replace(PAGE.encode(), b""))
         usual = {"rotate": 0, "mirror": False, "at": None, "scale": None, "margin": None, "paper": ""}
         arm = options.get("arm", "drawing_arm")
-        over, shown = page.evaluate(WHERE, [job["id"], arm, usual | options])
-        server.post(f"/api/jobs/{job['id']}/plan", options)
-        planned = server.settled(job["id"])
-        assert (over <= 0.01) == (planned["state"] == "planned"), (options, planned["error"])
-        if planned["state"] == "planned":
-            _, _, trajectory = server.answer("GET", f"/api/jobs/{job['id']}/trajectory")
-            head = next(line for line in trajectory.decode().splitlines() if line.startswith("# svg_to_arm_mm:"))
-            a, b, c, d, e, f = map(float, head.split(":")[1].split())
+        over, shown = page.evaluate(WHERE, [keys[has_page], arm, usual | options])
+        code = command([f"{has_page}.svg", *arguments_of(options, str), "-o", "traj.csv", "--quiet"])
+        assert (over <= 0.01) == (code == 0), options
+        if code == 0:
+            a, b, c, d, e, f = read_trajectory(Path("traj.csv")).svg_to_arm_mm
             mm = 1.0 if has_page else 96.0 / 25.4  # of a drawing without a page, units are pixels
             wanted = [[e, f], [e + mm * a, f + mm * b], [e + mm * c, f + mm * d]]
             assert shown == [pytest.approx(point, abs=2e-3) for point in wanted], options
