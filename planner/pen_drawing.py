@@ -16,6 +16,7 @@ from planner.drawing.join import join_strokes
 from planner.drawing.loops import with_loops
 from planner.drawing.metric import Metric
 from planner.drawing.order import ordered
+from planner.drawing.over_lines import Leaps, join_over_lines
 from planner.drawing.path_work import longer, repeated, simplified, without_doubles
 from planner.drawing.pen_groups import PenGroup
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
@@ -33,7 +34,7 @@ from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
 from planner.motion.crossed_gaps import Gaps, left_open
 from planner.motion.speed_limit import pen_speed_mm_s
 from planner.motion.timed_stroke import TimedStroke
-from planner.motion.tolerance import FLATTEN_SHARE, JOIN_SHARE, NARROW_SHARE
+from planner.motion.tolerance import FLATTEN_SHARE, JOIN_SHARE, NARROW_SHARE, ON_LINE_SHARE
 from planner.placement.clip import clip_strokes
 from planner.placement.pieces import Piece
 from planner.placement.short_gaps import SHORTEST_GAP_MM, gaps_to_draw
@@ -190,21 +191,18 @@ def _strokes(
         if doubled_mm:
             warnings.append(f"drawn once, though the drawing has it more than once: {doubled_mm:.1f} mm of line")
     if not (settings.keep_order or settings.reverse):
-        usual_mm = JOIN_SHARE * settings.tolerance_mm
-        join_mm = usual_mm if settings.join_mm is None else settings.join_mm
+        usual = _joined(strokes, None, settings.tolerance_mm)
         if settings.join_mm is None:
-            joined = join_strokes(strokes, usual_mm)
-            gaps = Gaps(strokes) if len(joined) < len(strokes) else None
+            gaps = Gaps(strokes) if len(usual) < len(strokes) else None
+            strokes = usual
         else:
-            joined = join_strokes(strokes, settings.join_mm)
-            more = len(join_strokes(strokes, usual_mm)) - len(joined)
-            if settings.join_mm > usual_mm and more > 0:
+            strokes = _joined(strokes, settings.join_mm, settings.tolerance_mm)
+            usual_mm = JOIN_SHARE * settings.tolerance_mm
+            if settings.join_mm > usual_mm and len(strokes) < len(usual):
                 warnings.append(
                     f"gaps of up to {settings.join_mm:g} mm drawn across as asked, which saves"
-                    f" {counted(more, 'pen lift')}; {usual_mm:g} mm is within the tolerance"
+                    f" {counted(len(usual) - len(strokes), 'pen lift')}; {usual_mm:g} mm is within the tolerance"
                 )
-        # Where a line is touched in its middle the header tells of no gap: so it has to be within the tolerance.
-        strokes = with_loops(joined, min(NARROW_SHARE * settings.tolerance_mm, join_mm))
     if settings.simplify_mm:
         strokes = simplified(strokes, settings.simplify_mm)
     if settings.min_length_mm:
@@ -212,6 +210,16 @@ def _strokes(
         if short:
             warnings.append(f"shorter than {settings.min_length_mm:g} mm and left out: {counted(len(short), 'stroke')}")
     return strokes, gaps, short, warnings
+
+
+def _joined(strokes: list[FloatArray], join_mm: float | None, tolerance_mm: float) -> list[FloatArray]:
+    """Strokes (n, 2) joined over gaps of up to `join_mm`, between ends and to the middles of lines. None: as is usual,
+    where the header tells of no gap. So what the pen draws across has to be within the tolerance, and only gaps between
+    ends are looked at again once the motion is known."""
+    narrow_mm = NARROW_SHARE * tolerance_mm if join_mm is None else join_mm
+    wide_mm = JOIN_SHARE * tolerance_mm if join_mm is None else join_mm
+    leaps = Leaps(wide_mm, narrow_mm, ON_LINE_SHARE * tolerance_mm)
+    return with_loops(join_over_lines(join_strokes(strokes, wide_mm), leaps), narrow_mm)
 
 
 def _within_reach(

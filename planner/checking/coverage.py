@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from planner.affine import scale_of
 from planner.arrays import BoolArray, FloatArray
@@ -61,9 +60,10 @@ def drawing_findings(
     limit = tolerance_mm + FLATTENING_MM + work.simplify_mm
     allowed = _dense(lines.allowed)
     off_mm = [allowed.distance_mm(pen.points_mm) for pen in pen_lines]
+    extra_mm = [_off_bridges(pen, off, limit, work.join_mm or 0.0) for pen, off in zip(pen_lines, off_mm, strict=True)]
     return [
         *shape,
-        _extra(trajectory, pen_lines, off_mm, sweeps, limit, affine),
+        _extra(trajectory, pen_lines, extra_mm, sweeps, limit, affine),
         _missing(trajectory, lines.required, pen_lines, limit + work.dedup_mm, affine),
         _drawn_once(trajectory, allowed, pen_lines[0], off_mm[0] > limit, sweeps[0], limit, affine),
         *tone_findings(trajectory, drawing, pen_lines[0], _outlines(trajectory, drawing)),
@@ -72,13 +72,17 @@ def drawing_findings(
 
 def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: FloatArray) -> FloatArray:
     """(n_samples,) mm from the tip (n_samples, 2 or more) to the drawing's outlines where `svg_to_arm_mm` puts them,
-    seen from above; 0 while the pen is up. Errors: UsageError where that map means nothing."""
+    seen from above, or to what it was to draw across; 0 while the pen is up. Errors: UsageError where that map means nothing."""
     trouble = map_trouble(trajectory, drawing)
     if trouble:
         raise UsageError(f"svg_to_arm_mm of the trajectory {trouble}")
     distance = np.zeros(trajectory.n_samples)
-    wanted = _dense(_wanted(trajectory, drawing).allowed)
-    distance[trajectory.pen] = wanted.distance_mm(tip_mm[trajectory.pen, :2])
+    lines, join_mm = _wanted(trajectory, drawing).allowed, trajectory.path_work.join_mm
+    if join_mm:
+        down = np.flatnonzero(trajectory.pen)
+        pen = _with_bounded_spacing(tip_mm[down, :2], np.diff(down, append=-1) == 1, down)
+        lines = [*lines, *_bridges(pen, _dense(lines).distance_mm(pen.points_mm), join_mm / 4, join_mm)]
+    distance[trajectory.pen] = _dense(lines).distance_mm(tip_mm[trajectory.pen, :2])
     return distance
 
 
@@ -109,8 +113,6 @@ def _wanted(trajectory: Trajectory, drawing: Drawing) -> WantedLines:
         lines = WantedLines([*lines.allowed, *within], [*lines.required, *within])
     if copies is not None:
         lines = _repeated(lines, copies.steps_mm)
-    bridges = _bridges(lines.allowed, trajectory.path_work.join_mm or 0.0)
-    lines = WantedLines([*lines.allowed, *bridges], lines.required)
     return lines if tile is None else on_the_sheet(_repeated(lines, shift[None]), tile, FLATTENING_MM)
 
 
@@ -128,13 +130,25 @@ def _outlines(trajectory: Trajectory, drawing: Drawing) -> list[FloatArray]:
     return lines if tile is None else [*lines, *tile.mark_lines()]
 
 
-def _bridges(lines: Sequence[FloatArray], gap_mm: float) -> list[FloatArray]:
-    """(2, 2) straight lines between ends of lines that are no further apart, where the header tells of joined ends."""
-    if not gap_mm:
+def _bridges(pen: DenseLines, off_mm: FloatArray, limit: float, join_mm: float) -> list[FloatArray]:
+    """(2, 2) the straight ways across gaps that are no wider, where the header tells of joined lines: wherever the pen
+    path leaves the drawing, all within a stroke, and is back on it that near."""
+    if not join_mm:
         return []
-    ends = np.array([end for line in lines if len(line) > 1 for end in (line[0], line[-1])]).reshape(-1, 2)
-    pairs = cKDTree(ends).query_pairs(gap_mm * (1.0 + 1e-6), output_type="ndarray")
-    return list(ends[pairs])
+    edge = np.diff((off_mm > limit).astype(np.int8), prepend=0, append=0)
+    before, after = np.flatnonzero(edge > 0) - 1, np.flatnonzero(edge < 0)
+    line = np.cumsum(~pen.joined) - ~pen.joined
+    is_inside = (before >= 0) & (after < len(line))
+    before, after = before[is_inside], after[is_inside]
+    ways = np.stack((pen.points_mm[before], pen.points_mm[after]), axis=1)
+    is_gap = (line[before] == line[after]) & (np.hypot(*(ways[:, 1] - ways[:, 0]).T) <= join_mm)
+    return list(ways[is_gap])
+
+
+def _off_bridges(pen: DenseLines, off_mm: FloatArray, limit: float, join_mm: float) -> FloatArray:
+    """(n,) how far each point of the pen path is off the drawing and the ways across its gaps."""
+    bridges = _bridges(pen, off_mm, limit, join_mm)
+    return np.minimum(off_mm, _dense(bridges).distance_mm(pen.points_mm)) if bridges else off_mm
 
 
 def _dense(lines: Sequence[FloatArray]) -> DenseLines:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -20,27 +20,37 @@ def join_strokes(strokes: Sequence[FloatArray], tolerance_mm: float = 0.05) -> l
     Where several meet, the straightest continuation is taken. Closed strokes and taps stay as they are. A chain takes
     the place and direction of its first stroke; every point of every stroke is kept, exact repeats at a joint aside.
     """
-    is_open = np.array([len(stroke) > 1 and not is_closed(stroke) for stroke in strokes], dtype=np.bool_)
-    open_strokes = np.flatnonzero(is_open)
-    # End 2 s is where stroke s begins, end 2 s + 1 where it ends; all that follows speaks of ends.
+    free = free_ends(strokes)
     partner = np.full(2 * len(strokes), -1, dtype=np.int64)
-    if len(open_strokes) > 1:
+    if len(free) > 2:
         points = np.array([(stroke[0], stroke[-1]) for stroke in strokes]).reshape(-1, 2)
         outward = np.array([_outward(stroke) for stroke in strokes]).reshape(-1, 2)
-        _match(
-            partner, np.stack([2 * open_strokes, 2 * open_strokes + 1], axis=1).ravel(), points, outward, tolerance_mm
-        )
+        _match(partner, free, points, outward, tolerance_mm)
+    return chained(strokes, partner, {})
+
+
+def free_ends(strokes: Sequence[FloatArray]) -> IntArray:
+    """The ends of open strokes: end 2 s is where stroke s begins, end 2 s + 1 where it ends."""
+    is_open = np.array([len(stroke) > 1 and not is_closed(stroke) for stroke in strokes], dtype=np.bool_)
+    return np.flatnonzero(np.repeat(is_open, 2))
+
+
+def chained(strokes: Sequence[FloatArray], partner: IntArray, over: Mapping[int, FloatArray]) -> list[FloatArray]:
+    """The strokes (n, 2) with each end joined to its partner, of those that `free_ends` numbers; -1 for none.
+
+    over: the point (2,) that the way from an end to its partner goes over, for both of them, where it is not straight.
+    """
     joined = []
     is_used = np.zeros(len(strokes), dtype=np.bool_)
     for index, stroke in enumerate(strokes):
         if is_used[index]:
             continue
-        if not is_open[index]:
+        if (partner[2 * index : 2 * index + 2] < 0).all():
             joined.append(stroke)
             continue
         chain, is_loop = _chain(partner, index)
         is_used[[end // 2 for end in chain]] = True
-        joined.append(_assembled(strokes, chain, is_loop))
+        joined.append(_assembled(strokes, chain, is_loop, over))
     return joined
 
 
@@ -123,10 +133,14 @@ def _chain(partner: IntArray, index: int) -> tuple[list[int], bool]:
         chain.append(following)
 
 
-def _assembled(strokes: Sequence[FloatArray], chain: list[int], is_loop: bool) -> FloatArray:
-    pieces = [strokes[entry // 2][::-1] if entry % 2 else strokes[entry // 2] for entry in chain]
-    if len(pieces) == 1 and not is_loop:
-        return pieces[0]
+def _assembled(
+    strokes: Sequence[FloatArray], chain: list[int], is_loop: bool, over: Mapping[int, FloatArray]
+) -> FloatArray:
+    pieces = []
+    for entry in chain:
+        pieces.append(strokes[entry // 2][::-1] if entry % 2 else strokes[entry // 2])
+        if entry ^ 1 in over:
+            pieces.append(over[entry ^ 1][np.newaxis])
     if is_loop:
         pieces.append(pieces[0][:1])
     points = np.concatenate(pieces)

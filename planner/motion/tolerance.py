@@ -9,10 +9,10 @@ from __future__ import annotations
 
 FLATTEN_SHARE = 0.04
 """Chords in the place of curves."""
-JOIN_SHARE, NARROW_SHARE = 2.0, 0.5
+JOIN_SHARE, NARROW_SHARE, ON_LINE_SHARE = 2.0, 0.5, 0.02
 """How far ends may be apart that are joined: the middle of the gap is half of that off the drawing. The pen may stray
 there by all that it may elsewhere where the gap is a narrow one; wider ones are looked at, and crossed where it strays
-little."""
+little. An end is on a line where it is off that by the last of them: along the line there is no gap."""
 STROKE_SHARE = 1.0 - FLATTEN_SHARE
 """How far the pen may be off a stroke, and the stroke off what the pen draws, at the samples and between them."""
 CHORD_SHARE = 0.16
