@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from planner.affine import scale_of
-from planner.arrays import BoolArray, FloatArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.checking.between import Sweep
 from planner.checking.check_result import Finding, Place
 from planner.checking.chosen import told_by
@@ -65,14 +66,23 @@ def drawing_findings(
         *shape,
         _extra(trajectory, pen_lines, extra_mm, sweeps, limit, affine),
         _missing(trajectory, lines.required, pen_lines, limit + work.dedup_mm, affine),
-        _drawn_once(trajectory, allowed, pen_lines[0], off_mm[0] > limit, sweeps[0], limit, affine),
+        _drawn_once(
+            trajectory,
+            _with_joints(lines.allowed, work.join_mm or 0.0),
+            pen_lines[0],
+            off_mm[0] > limit,
+            sweeps[0],
+            limit,
+            affine,
+        ),
         *tone_findings(trajectory, drawing, pen_lines[0], _outlines(trajectory, drawing)),
     ]
 
 
 def distance_from_drawing(trajectory: Trajectory, drawing: Drawing, tip_mm: FloatArray) -> FloatArray:
     """(n_samples,) mm from the tip (n_samples, 2 or more) to the drawing's outlines where `svg_to_arm_mm` puts them,
-    seen from above, or to what it was to draw across; 0 while the pen is up. Errors: UsageError where that map means nothing."""
+    seen from above, or to the gaps that it was to draw across; 0 while the pen is up. Errors: UsageError where that map
+    means nothing."""
     trouble = map_trouble(trajectory, drawing)
     if trouble:
         raise UsageError(f"svg_to_arm_mm of the trajectory {trouble}")
@@ -130,6 +140,16 @@ def _outlines(trajectory: Trajectory, drawing: Drawing) -> list[FloatArray]:
     return lines if tile is None else [*lines, *tile.mark_lines()]
 
 
+def _with_joints(lines: Sequence[FloatArray], join_mm: float) -> DenseLines:
+    """The lines, and straight ones between ends of them that may be joined where the header tells of it, be it over a
+    line that is that near to both: along this, what joins them is drawn beside it."""
+    if not join_mm:
+        return _dense(lines)
+    ends = np.array([end for line in lines if len(line) > 1 for end in (line[0], line[-1])]).reshape(-1, 2)
+    pairs = cKDTree(ends).query_pairs(2.0 * join_mm * (1.0 + 1e-6), output_type="ndarray")
+    return _dense([*lines, *ends[pairs]])
+
+
 def _bridges(pen: DenseLines, off_mm: FloatArray, limit: float, join_mm: float) -> list[FloatArray]:
     """(2, 2) the straight ways across gaps that are no wider, where the header tells of joined lines: wherever the pen
     path leaves the drawing, all within a stroke, and is back on it that near."""
@@ -137,7 +157,7 @@ def _bridges(pen: DenseLines, off_mm: FloatArray, limit: float, join_mm: float) 
         return []
     edge = np.diff((off_mm > limit).astype(np.int8), prepend=0, append=0)
     before, after = np.flatnonzero(edge > 0) - 1, np.flatnonzero(edge < 0)
-    line = np.cumsum(~pen.joined) - ~pen.joined
+    line: IntArray = np.cumsum(~pen.joined) - ~pen.joined
     is_inside = (before >= 0) & (after < len(line))
     before, after = before[is_inside], after[is_inside]
     ways = np.stack((pen.points_mm[before], pen.points_mm[after]), axis=1)

@@ -85,8 +85,9 @@ def _root(group: list[int], index: int) -> int:
     return index
 
 
-def _touches(strokes: Sequence[FloatArray], loops: IntArray, tolerance_mm: float) -> Iterator[_Touch]:
-    """Where closed strokes are near others: first where these end, as there the pen comes to rest anyway."""
+def _touches(strokes: Sequence[FloatArray], loops: IntArray, tolerance_mm: float) -> list[_Touch]:
+    """Where closed strokes are near others: the nearest first, so that no way across leads over a line between them.
+    Of those that are as near, first where others end, as there the pen comes to rest anyway."""
     import shapely  # heavy, and drawings without closed strokes need none of it
 
     lines = np.array([shapely.LineString(stroke if len(stroke) > 1 else stroke[[0, 0]]) for stroke in strokes])
@@ -97,6 +98,8 @@ def _touches(strokes: Sequence[FloatArray], loops: IntArray, tolerance_mm: float
     within_mm = tolerance_mm * (1.0 + 1e-9)
     ends = np.asarray(shapely.points(np.array([strokes[index][[0, -1]] for index in opened.tolist()]).reshape(-1, 2)))
     others = np.flatnonzero(is_open | is_closed_one)  # a tap is no line to be led on
+    touches: list[_Touch] = []
+    gaps: list[FloatArray] = []
     for owners, targets, owner_mm in (
         (np.repeat(opened, 2), ends, np.stack([np.zeros(len(opened)), shapely.length(lines[opened])], axis=1).ravel()),
         (others, lines[others], None),
@@ -118,7 +121,10 @@ def _touches(strokes: Sequence[FloatArray], loops: IntArray, tolerance_mm: float
                 if owner_mm is None
                 else owner_mm[target]
             )
-            yield from map(_Touch, closed.tolist(), other.tolist(), own_mm.tolist(), other_mm.tolist())
+            touches += map(_Touch, closed.tolist(), other.tolist(), own_mm.tolist(), other_mm.tolist())
+            gaps.append(np.round(shapely.length(between) / _ROUNDING_MM))
+    nearest = np.argsort(np.concatenate(gaps), kind="stable") if gaps else np.empty(0, dtype=np.int64)
+    return [touches[index] for index in nearest.tolist()]
 
 
 def _led_through(
