@@ -18,6 +18,8 @@ from planner.drawing.nearest import NearestPoints
 
 _NEIGHBOURS = 8
 """Other ends that each end may be joined to."""
+_CROWD = 64
+"""An end with so many others about is left alone, so that a place where thousands meet takes no quadratic work."""
 _AT_ONCE = 100_000
 """Ways over pieces of lines that are measured together."""
 
@@ -61,9 +63,11 @@ def join_over_lines(strokes: Sequence[FloatArray], leaps: Leaps) -> list[FloatAr
 
 def _neighbours(free: IntArray, points: FloatArray, leap_mm: float) -> tuple[IntArray, IntArray]:
     """Pairs of ends, each once, that two leaps may join."""
-    k = min(_NEIGHBOURS + 1, len(free))
-    gaps, others = NearestPoints(points[free]).query(points[free], k)
-    rows, columns = np.nonzero(gaps <= 2.0 * leap_mm * (1.0 + 1e-9))
+    gaps, others = NearestPoints(points[free]).query(points[free], min(_CROWD, len(free)))
+    is_near = gaps <= 2.0 * leap_mm * (1.0 + 1e-9)
+    is_crowded = is_near.sum(axis=1) >= _CROWD
+    is_near[is_crowded] = False
+    rows, columns = np.nonzero(is_near[:, : _NEIGHBOURS + 1] & ~is_crowded[others[:, : _NEIGHBOURS + 1]])
     pairs = np.sort(np.stack((free[rows], free[others[rows, columns]]), axis=1), axis=1)
     pairs = np.unique(pairs[pairs[:, 0] != pairs[:, 1]], axis=0)
     return pairs[:, 0], pairs[:, 1]
