@@ -12,6 +12,8 @@ from planner.drawing.nearest import NearestPoints
 # Ends that share a cell of this share of the tolerance coincide but for rounding, and are joined first.
 _EXACT_SHARE = 0.02
 _NEIGHBOURS = 8
+LEAST_ROUND = 4.0
+"""Length of a stroke whose own ends may be joined, in lengths that may be joined: a shorter one is no way round."""
 
 
 def join_strokes(strokes: Sequence[FloatArray], tolerance_mm: float = 0.05) -> list[FloatArray]:

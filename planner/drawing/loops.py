@@ -14,15 +14,13 @@ from itertools import chain
 import numpy as np
 
 from planner.arrays import FloatArray, IntArray
-from planner.drawing.join import is_closed
+from planner.drawing.join import LEAST_ROUND, is_closed
 from planner.polyline_length import polyline_length
 
 _AT_ONCE = 500
 """Closed strokes whose neighbours are looked for together."""
 _ROUNDING_MM = 1e-9
 """Points nearer than this to the one before are the same: a way of that length has no direction."""
-_LEAST_ROUND = 4.0
-"""Length of a stroke whose ends may be joined, in lengths that may be joined: a shorter one is no way round."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +73,7 @@ def _is_nearly_closed(stroke: FloatArray, tolerance_mm: float) -> bool:
     """Whether the ends of a stroke may be joined, and enclose more than what is no larger than their gap may be."""
     if len(stroke) < 3 or float(np.hypot(*(stroke[-1] - stroke[0]))) > tolerance_mm * (1.0 + 1e-9):
         return False
-    return polyline_length(stroke) > _LEAST_ROUND * tolerance_mm
+    return polyline_length(stroke) > LEAST_ROUND * tolerance_mm
 
 
 def _root(group: list[int], index: int) -> int:

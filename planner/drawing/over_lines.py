@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import BoolArray, FloatArray, IntArray
-from planner.drawing.join import chained, free_ends
+from planner.drawing.join import LEAST_ROUND, chained, free_ends
 from planner.drawing.nearest import NearestPoints
+from planner.polyline_length import polyline_length
 
 _NEIGHBOURS = 8
 """Other ends that each end may be joined to."""
@@ -84,8 +85,9 @@ def _ways(
     owner = np.repeat(
         [index for index, stroke in enumerate(strokes) if len(stroke) > 1], [len(line) - 1 for line in lines]
     )
-    pieces = np.asarray(shapely.linestrings(np.stack((begins, ends), axis=1)))
     leap_mm = max(leaps.wide, leaps.through_air) * (1.0 + 1e-9)
+    is_way_round = np.array([polyline_length(stroke) > LEAST_ROUND * leap_mm for stroke in strokes])
+    pieces = np.asarray(shapely.linestrings(np.stack((begins, ends), axis=1)))
     asked, row = np.unique(one, return_inverse=True)
     found = shapely.STRtree(pieces).query(shapely.points(points[asked]), predicate="dwithin", distance=leap_mm)
     # The pieces near the first end of each pair, one after the other.
@@ -98,8 +100,9 @@ def _ways(
             np.cumsum(count[row[begin:end]]) - count[row[begin:end]], count[row[begin:end]]
         )
         piece = near[first[row[pair]] + within]
-        # The ends of one stroke need another one to be joined over.
-        is_other = (one[pair] // 2 != other[pair] // 2) | (owner[piece] != one[pair] // 2)
+        # The ends of one stroke need another one to be joined over, and a way round that is longer than the way over.
+        stroke = one[pair] // 2
+        is_other = (stroke != other[pair] // 2) | ((owner[piece] != stroke) & is_way_round[stroke])
         pair, piece = pair[is_other], piece[is_other]
         a, b = points[one[pair]], points[other[pair]]
         place, is_near = _over(a, b, begins[piece], ends[piece], leaps)
