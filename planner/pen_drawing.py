@@ -22,6 +22,7 @@ from planner.drawing.pen_groups import PenGroup
 from planner.errors import LinksCollide, PlanError, TargetOutOfReach, UsageError
 from planner.execution.context import PlanContext
 from planner.execution.work_chunks import (
+    may_be_cut,
     pieces_of,
     planned_travel_moves,
     stroke_chunks,
@@ -36,7 +37,7 @@ from planner.motion.speed_limit import pen_speed_mm_s
 from planner.motion.timed_stroke import TimedStroke
 from planner.motion.tolerance import FLATTEN_SHARE, JOIN_SHARE, NARROW_SHARE, ON_LINE_SHARE
 from planner.placement.clip import clip_strokes
-from planner.placement.pieces import Piece
+from planner.placement.pieces import Piece, halves
 from planner.placement.short_gaps import SHORTEST_GAP_MM, gaps_to_draw
 from planner.placement.split import split_strokes
 from planner.polyline_length import polyline_length
@@ -50,6 +51,8 @@ from planner.travel.travel_time_metric import travel_time_metric
 
 _MANY_CHUNKS, _FORETELLING = 200, 8
 """Work chunks from which on some are timed beforehand, and how many of them."""
+_HALVINGS = 4
+"""How often a stroke that is not held is cut further."""
 _TOO_MUCH = "draw less of it, or choose a lower --rate"
 
 
@@ -303,6 +306,7 @@ def _timed_strokes(
             path = infeasible_paths[0]
             nearest = int(np.argmin(np.hypot(*(stroke - path.tip_mm).T)))
             raise TargetOutOfReach(first + index, nearest, path.tip_mm, path.reason, path.joint, path.limit)
+    timed = _held_in_pieces(executor, context, kept, timed)
     unconverged = sum(not stroke.converged for stroke in timed)
     loose = sum(not stroke.held for stroke in timed)
     counts = [
@@ -311,6 +315,28 @@ def _timed_strokes(
         (loose, "off the drawing by more than the tolerance, however slow; try a larger --tolerance"),
     ]
     return timed, kept, _drawn(lost), [f"{what}: {counted(count, 'stroke')}" for count, what in counts if count]
+
+
+def _held_in_pieces(
+    executor: ChunkExecutor, context: PlanContext, strokes: Sequence[FloatArray], timed: Sequence[TimedStroke]
+) -> list[TimedStroke]:
+    """The motions of strokes, of which those that no speed keeps within the tolerance are made in ever smaller pieces,
+    with a rest on the paper between them."""
+    found = list(timed)
+    if not may_be_cut(context):
+        return found
+    pieces = {index: pieces_of(context, [strokes[index]])[0] for index, motion in enumerate(found) if not motion.held}
+    for _ in range(_HALVINGS):
+        pieces = {index: halves(some) for index, some in pieces.items() if not found[index].held}
+        if not pieces:
+            break
+        together = list(chain.from_iterable(pieces.values()))
+        results = chain.from_iterable(executor(timed_strokes, stroke_chunks(context, together)))
+        for index, some in pieces.items():
+            made = [result for result in islice(results, len(some)) if isinstance(result, TimedStroke)]
+            if len(made) == len(some):
+                found[index] = TimedStroke.of(made)
+    return found
 
 
 def _foretell(executor: ChunkExecutor, context: PlanContext, pieces: Sequence[Piece]) -> None:

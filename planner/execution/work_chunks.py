@@ -46,13 +46,18 @@ class TravelChunk:
 
 
 def pieces_of(context: PlanContext, strokes: Sequence[FloatArray]) -> list[list[Piece]]:
-    """What may be timed apart, stroke by stroke. Methods that go from configuration to configuration need strokes
+    """What may be timed apart, stroke by stroke."""
+    tolerance_mm = ROUNDED_SHARE * STROKE_SHARE * context.settings.tolerance_mm
+    return list(in_pieces(strokes, tolerance_mm, whole=not may_be_cut(context)))
+
+
+def may_be_cut(context: PlanContext) -> bool:
+    """Whether pieces of strokes may be timed apart. Methods that go from configuration to configuration need strokes
     whole, and so does an arm that has to choose a branch for each."""
     settings = context.settings
-    whole = settings.method in (Method.DLS, Method.NLP) or (
+    return settings.method not in (Method.DLS, Method.NLP) and not (
         settings.method is Method.PATH and len(context.model.branches(settings.weights)) > 1
     )
-    return list(in_pieces(strokes, ROUNDED_SHARE * STROKE_SHARE * settings.tolerance_mm, whole=whole))
 
 
 def stroke_chunks(context: PlanContext, pieces: Sequence[Piece]) -> Iterator[StrokeChunk]:

@@ -41,6 +41,22 @@ def in_pieces(strokes: Sequence[FloatArray], tolerance_mm: float, *, whole: bool
         yield [Piece(stroke[first : last + 1], float(work[last] - work[first])) for first, last in pairwise(cuts)]
 
 
+def halves(pieces: Sequence[Piece]) -> list[Piece]:
+    """The same stroke, with each piece that has a vertex in its middle half cut in two at the sharpest one there."""
+    found: list[Piece] = []
+    for piece in pieces:
+        n = len(piece.points_mm)
+        low, high = max(n // 4, 1), min(n - n // 4, n - 1)
+        if low >= high:
+            found.append(piece)
+            continue
+        cut = low + int(np.argmin(_straightness(piece.points_mm)[low:high]))
+        share = cut / (n - 1)
+        found.append(Piece(piece.points_mm[: cut + 1], share * piece.work))
+        found.append(Piece(piece.points_mm[cut:], (1.0 - share) * piece.work))
+    return found
+
+
 def _work_along(strokes: Sequence[FloatArray], tolerance_mm: float) -> Iterator[FloatArray]:
     """(n,) for each stroke: the work that it is up to each of its points. Short strokes are looked at together, long
     ones part by part."""
@@ -74,10 +90,7 @@ def _cuts(stroke: FloatArray, work: FloatArray) -> list[int]:
     count = round(float(work[-1]) / _WORK)
     if count < 2:
         return []
-    steps = np.diff(stroke, axis=0)
-    steps /= np.hypot(*steps.T)[:, None]
-    straightness = np.full(len(stroke), np.inf)  # the cosine of the turn
-    straightness[1:-1] = (steps[:-1] * steps[1:]).sum(axis=1)
+    straightness = _straightness(stroke)
     piece = float(work[-1]) / count
     cuts: list[int] = []
     for middle in piece * np.arange(1, count):
@@ -85,3 +98,12 @@ def _cuts(stroke: FloatArray, work: FloatArray) -> list[int]:
         if low < high:  # else no vertex is near: one long straight goes by
             cuts.append(low + int(np.argmin(straightness[low:high])))
     return cuts
+
+
+def _straightness(stroke: FloatArray) -> FloatArray:
+    """(n,) the cosine of the turn at each point; inf at the ends."""
+    steps = np.diff(stroke, axis=0)
+    steps /= np.hypot(*steps.T)[:, None]
+    straightness = np.full(len(stroke), np.inf)
+    straightness[1:-1] = (steps[:-1] * steps[1:]).sum(axis=1)
+    return straightness
