@@ -11,6 +11,8 @@ from planner.drawing.nearest import NearestPoints
 
 # Ends that share a cell of this share of the tolerance coincide but for rounding, and are joined first.
 _EXACT_SHARE = 0.02
+_ROUNDING_MM = 1e-9
+"""Ends that are no further apart are in one place, whatever is asked for."""
 _NEIGHBOURS = 8
 LEAST_ROUND = 4.0
 """Length of a stroke whose own ends may be joined, in lengths that may be joined: a shorter one is no way round."""
@@ -97,7 +99,7 @@ def _coincident(
     free: IntArray, points: FloatArray, outward: FloatArray, tolerance_mm: float
 ) -> tuple[IntArray, IntArray]:
     """Pairs of ends in one place, for each end those that lead most nearly straight on."""
-    cells = np.round(points[free] / (_EXACT_SHARE * tolerance_mm))
+    cells = np.round(points[free] / max(_EXACT_SHARE * tolerance_mm, _ROUNDING_MM))
     place = np.unique(cells, axis=0, return_inverse=True)[1].ravel()
     angle = np.arctan2(outward[free, 1], outward[free, 0]) % (2.0 * np.pi)
     by_angle = np.lexsort((angle, place))

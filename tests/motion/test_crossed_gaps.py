@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -12,7 +13,9 @@ from hypothesis import strategies as st
 
 from planner.arrays import FloatArray
 from planner.checking.check import check_trajectory
+from planner.checking.coverage import distance_from_drawing
 from planner.drawing.svg import read_drawing
+from planner.head import PathWork
 from planner.kinematics.projection import project
 from planner.motion.crossed_gaps import Gaps, left_open
 from planner.pipeline import Plan, plan
@@ -118,3 +121,55 @@ def test_sheets_know_the_gaps_of_the_whole() -> None:
     stroke, moved = np.concatenate(lines), np.array([0.1, 1 / 3])
     there = Gaps([line + moved for line in Gaps(lines).strokes])
     assert there.crossed_by(stroke + moved, 0.02, 0.1).tolist() == [1]
+
+
+TEES = (
+    '<path d="M 5 10 H 40 M 15 9.85 V 5 M 15.1 10.15 V 20 M 30 9.82 L 28 5 L 32 5 L 30.15 9.85" '
+    'fill="none" stroke="#000"/>'
+)
+
+
+def test_ends_on_both_sides_of_a_line_are_joined_over_it_on_request(tmp_path: Path) -> None:
+    assert drawn(tmp_path, TEES).summary.n_strokes == 4
+    made = drawn(tmp_path, TEES, join_mm=0.2)
+    assert made.summary.n_strokes == 2  # the loop is drawn on the way
+    assert any("which saves 2 pen lifts" in note for note in made.summary.warnings)
+    untold = replace(made.trajectory, path_work=PathWork())
+    verdict = check_trajectory(untold, load_once("drawing_arm"), read_drawing(tmp_path / "gaps.svg"))
+    assert "nothing extra" in {fault.check for fault in verdict.faults}
+    error_mm = distance_from_drawing(made.trajectory, read_drawing(tmp_path / "gaps.svg"), tips(made))
+    assert error_mm.max() < TOLERANCE_MM + 0.01
+
+
+def test_ends_that_touch_a_line_are_joined_along_it_unasked(tmp_path: Path) -> None:
+    body = '<path d="M 5 10 H 40 M 15 10 V 5 M 15.15 10 V 20" fill="none" stroke="#000"/>'
+    assert drawn(tmp_path, body).summary.n_strokes == 2
+
+
+@pytest.mark.parametrize(
+    ("ink", "allowed"),
+    [
+        ("M 5 10 H 20 M 20.18 10 H 40", True),
+        ("M 5 10 H 20 M 20.3 10 H 40", False),  # wider than told
+        ("M 5 10 H 20 M 20.2 9.85 H 40 M 20 10 V 20", False),  # the pen goes round about
+        ("M 5 10 H 39.85", False),  # the pen goes on where no line is
+    ],
+)
+def test_the_check_knows_gaps_by_their_width_and_that_lines_are_on_both_sides(
+    tmp_path: Path, ink: str, allowed: bool
+) -> None:
+    paths = {"M 5 10 H 20 M 20.2 9.85 H 40 M 20 10 V 20": "M 5 10 H 20 L 20.15 10.1 L 20.2 9.85 H 40 M 20 10 V 20"}
+    made = drawn(tmp_path, f'<path d="{paths.get(ink, "M 5 10 H 40")}" fill="none" stroke="#000"/>')
+    file = tmp_path / "ink.svg"
+    file.write_text(
+        lines_svg(f'<path d="{ink}" fill="none" stroke="#000"/>', 'width="60mm" height="60mm" viewBox="0 0 60 60"')
+    )
+    told = replace(made.trajectory, path_work=PathWork(join_mm=0.2))
+    verdict = check_trajectory(told, load_once("drawing_arm"), read_drawing(file))
+    assert ("nothing extra" not in {fault.check for fault in verdict.faults}) == allowed
+
+
+def tips(made: Plan) -> FloatArray:
+    kinematics = kinematics_of(load_once("drawing_arm"))
+    joints = kinematics.arm.from_file_units(made.trajectory.positions)
+    return kinematics.tip_mm(kinematics.independent_of(joints))
