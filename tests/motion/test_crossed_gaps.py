@@ -141,6 +141,21 @@ def test_ends_on_both_sides_of_a_line_are_joined_over_it_on_request(tmp_path: Pa
     assert error_mm.max() < TOLERANCE_MM + 0.01
 
 
+@settings(deadline=None, max_examples=4, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(seed=st.integers(0, 10**6), join_mm=st.sampled_from([None, 0.1, 0.2, 0.3]))
+def test_what_ends_about_lines_is_drawn_as_the_check_wants_it(tmp_path: Path, seed: int, join_mm: float | None) -> None:
+    rng = np.random.default_rng(seed)
+    paths = []
+    for row in (10.0, 20.0, 20.2, 30.0):
+        paths.append(f"M 5 {row} H 45")
+        for place in rng.uniform(8.0, 42.0, 12):
+            side = rng.choice([-1.0, 1.0])
+            x, y = place + rng.uniform(-0.3, 0.3, 2)
+            begin, end = (row + side * rng.choice([0.0, rng.uniform(0.0, 0.3)]) for _ in range(2))
+            paths.append(f"M {x:.4f} {begin:.4f} L {x - 1:.4f} {begin + 4 * side:.4f} L {y:.4f} {end:.4f}")
+    drawn(tmp_path, f'<path d="{" ".join(paths)}" fill="none" stroke="#000"/>', join_mm=join_mm)  # type: ignore[arg-type]
+
+
 def test_ends_that_touch_a_line_are_joined_along_it_unasked(tmp_path: Path) -> None:
     body = '<path d="M 5 10 H 40 M 15 10 V 5 M 15.15 10 V 20" fill="none" stroke="#000"/>'
     assert drawn(tmp_path, body).summary.n_strokes == 2
