@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 
@@ -137,24 +138,60 @@ def seen_from_the_side(arm: Arm, nodes_mm: FloatArray) -> FloatArray:
 
 def arm_nodes(arm: Arm, joints: FloatArray) -> FloatArray:
     """(n, n_nodes, 3) in the paper's frame: the base, and for each joint its origin, where its axis takes it and
-    where its link ends, then the tip, of all those that ever differ from the one before."""
+    where its link ends, then the tip, of all those that ever differ from the one before. A pen that is held along
+    the last joint's axis comes after that joint's link, so that it is what comes down to the paper."""
     frames = chain_frames(arm, joints)
     moving = joint_frames(arm, frames)
     nodes = [frames[:, 0, :3, 3]]
-    for index, joint in enumerate(arm.joints):
+    for index, part in _links(arm):
+        joint = arm.joints[index]
         slides = joint.kind is JointKind.PRISMATIC
-        travel = joint.d_mm + (joints[:, index, np.newaxis] if slides else 0.0)
-        bend = moving[:, index, :3, 3] + travel * moving[:, index, :3, 2]
-        if joint.origin.length_mm:
+        if part is _Part.ORIGIN:
             nodes.append(moving[:, index, :3, 3])
-        if slides or joint.d_mm:
-            nodes.append(bend)
-        if joint.a_mm:
+        elif part is _Part.TOOL:
+            nodes.append(frames[:, -1, :3, 3])
+        elif part is _Part.D:
+            travel = joint.d_mm + (joints[:, index, np.newaxis] if slides else 0.0)
+            nodes.append(nodes[-1] + travel * moving[:, index, :3, 2])
+        else:
             turn = joint.theta_rad + (0.0 if slides else joints[:, index, np.newaxis])
             along = np.cos(turn) * moving[:, index, :3, 0] + np.sin(turn) * moving[:, index, :3, 1]
-            nodes.append(bend + joint.a_mm * along)
-    if arm.tool.length_mm:
-        nodes.append(frames[:, -1, :3, 3])
+            nodes.append(nodes[-1] + joint.a_mm * along)
     T_paper_base = arm.paper.T_paper_base
     seen: FloatArray = np.stack(nodes, axis=1) @ T_paper_base[:3, :3].T + T_paper_base[:3, 3]
     return seen
+
+
+def link_thicknesses_mm(arm: Arm) -> list[float | None]:
+    """Of what lies between each two of `arm_nodes`; None where the arm's file does not say."""
+    return [
+        None if part is _Part.TOOL else arm.joints[max(index - (part is _Part.ORIGIN), 0)].thickness_mm
+        for index, part in _links(arm)
+    ]
+
+
+class _Part(Enum):
+    """Of a chain: on to the origin of a joint, along d and along a of its row, and on to the tip."""
+
+    ORIGIN, D, A, TOOL = range(4)
+
+
+def _links(arm: Arm) -> list[tuple[int, _Part]]:
+    """The parts that lead from each of `arm_nodes` to the next, each with its joint."""
+    links: list[tuple[int, _Part]] = []
+    for index, joint in enumerate(arm.joints):
+        d = [_Part.D] if joint.kind is JointKind.PRISMATIC or joint.d_mm else []
+        a = [_Part.A] if joint.a_mm else []
+        row = [*a, *d] if index == arm.n_joints - 1 and _pen_is_along_last_axis(arm) else [*d, *a]
+        links += [(index, part) for part in ([_Part.ORIGIN] if joint.origin.length_mm else []) + row]
+    if arm.tool.length_mm:
+        links.append((arm.n_joints - 1, _Part.TOOL))
+    return links
+
+
+def _pen_is_along_last_axis(arm: Arm) -> bool:
+    """Rather than along the link of that joint."""
+    along_x, along_y, along_z = arm.pen.tool_axis
+    alpha_rad = arm.joints[-1].alpha_rad
+    along_axis = along_y * np.sin(alpha_rad) + along_z * np.cos(alpha_rad)
+    return arm.tool.is_identity and bool(abs(along_axis) > abs(along_x))

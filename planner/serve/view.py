@@ -24,6 +24,7 @@ from planner.files import written_aside
 from planner.kinematics.sensitivity import sideways_error
 from planner.pens import hex_of
 from planner.pictures import motion_for_film
+from planner.plots.motion import link_thicknesses_mm
 from planner.plots.player import film_of
 from planner.redundancy.arm_model import ArmModel
 from planner.trajectory import Trajectory, read_trajectory
@@ -61,14 +62,16 @@ def arm_view(arm: Arm) -> dict[str, Any]:
 
 
 def film_view(trajectory: Trajectory, arm: Arm) -> dict[str, Any]:
-    """The film, with the joints' positions, velocities and limits in the units of the arm file, and what is drawn by
-    which pen. Plain values for JSON."""
+    """The film, with the joints' positions and limits in the units of the arm file, how thick links are, where the
+    paper is in the base frame, and what is drawn by which pen. Plain values for JSON."""
     every = max(-(-trajectory.n_samples // _MOST_POSES), 1)
     return film_of(motion_for_film(trajectory, arm)) | {
         "n_samples": trajectory.n_samples,
         "every": every,
         "positions": _packed(trajectory.positions[::every]),
         "joints": arm_description(arm)["joints"],
+        "thicknesses_mm": link_thicknesses_mm(arm),
+        "T_base_paper": arm.paper.T_base_paper.round(9).tolist(),
         "pens": [{"name": pen.name, "colour": hex_of(pen.colour), "width_mm": pen.width_mm} for pen in trajectory.pens],
         "pen_changes": list(trajectory.pen_changes),
     }

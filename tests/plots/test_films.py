@@ -25,11 +25,13 @@ from planner.arrays import FloatArray
 from planner.checking.chain import chain_poses
 from planner.errors import OutputError, UsageError
 from planner.head import PenInk
+from planner.kinematics.frame_jacobian import chain_frames
 from planner.plots.film import Film
 from planner.plots.film_file import film_format, save_film
 from planner.plots.look import Look, Theme
-from planner.plots.motion import Motion, motion_of, seen_from_the_side
+from planner.plots.motion import Motion, arm_nodes, link_thicknesses_mm, motion_of, seen_from_the_side
 from planner.plots.player import player_page
+from planner.redundancy.arm_model import ArmModel
 from planner.trajectory import TRAVELLING, Trajectory
 
 SMALL = Look.of(dpi=30)
@@ -66,6 +68,24 @@ def test_the_last_node_is_the_tip_and_links_keep_their_lengths(name: str, paper:
     np.testing.assert_allclose(
         side[:, -1], np.column_stack((np.hypot(*(tip_mm - base_mm)[:, :2].T), tip_mm[:, 2])), atol=1e-9
     )
+
+
+@pytest.mark.parametrize("name", known_arms())
+def test_what_comes_down_to_the_paper_is_the_pen(name: str) -> None:
+    arm = load_arm(name)
+    model = ArmModel(arm)
+    joints = arm.complete(model.configuration_map().home[None])
+    nodes_mm = arm_nodes(arm, joints)[0]
+    last = nodes_mm[-1] - nodes_mm[-2]
+    frame = arm.paper.T_paper_base @ chain_frames(arm, joints)[0, -1]
+    np.testing.assert_allclose(last / np.linalg.norm(last), frame[:3, :3] @ arm.pen.tool_axis, atol=1e-6)
+    assert len(link_thicknesses_mm(arm)) == len(nodes_mm) - 1
+
+
+def test_links_are_as_thick_as_the_file_says_of_their_joints() -> None:
+    arm = load_arm("so101")
+    thick = replace(arm, joints=tuple(replace(joint, thickness_mm=10.0 + k) for k, joint in enumerate(arm.joints)))
+    assert link_thicknesses_mm(thick) == [10.0, 10.0, 11.0, 12.0, 13.0, 14.0, 14.0]
 
 
 @given(speed=st.floats(0.1, 50), fps=st.floats(1, 50), begin_s=st.floats(0, 2.5))
