@@ -93,10 +93,14 @@ def player_page(
         "plays": plays,
         "colours": [_colours_of(one) for one in (look, dark or look)],
     }
-    template = files("planner.plots").joinpath("player.html").read_text(encoding="utf-8")
+    folder = files("planner.plots")
+    template = folder.joinpath("player.html").read_text(encoding="utf-8")
+    reader = folder.joinpath("film_reader.js").read_text(encoding="utf-8")
     # a name must not end the script that it stands in
-    return template.replace("$TITLE", html.escape(f"{film['name']} on {motion.arm.name}")).replace(
-        "$FILM", json.dumps(film).replace("<", "\\u003c")
+    return (
+        template.replace("$TITLE", html.escape(f"{film['name']} on {motion.arm.name}"))
+        .replace("$READER", reader.replace("export function", "function"))
+        .replace("$FILM", json.dumps(film).replace("<", "\\u003c"))
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,8 @@ from planner.serve.run import Wish
 from planner.serve.store import Job
 
 STATIC = Path(__file__).parent / "static"
+FILM_READER = files("planner.plots").joinpath("film_reader.js")
+"""What unpacks films, here and in their player."""
 MOST_BYTES = 32 << 20
 """Of a drawing: what its reader takes."""
 _MOST_ASKED = 64 << 10
@@ -59,6 +62,7 @@ def application(house: House, names: frozenset[str], token: str | None) -> Starl
         Route("/api/calibration/calibrate", _plainly(pages.calibrate), methods=["POST"]),
         Route("/api/calibration/sheet", _plainly(pages.sheet)),
         Route("/api/calibration/reading", _plainly(pages.reading)),
+        Route("/static/film_reader.js", pages.film_reader),
         Mount("/static", StaticFiles(directory=STATIC)),
     ]
 
@@ -83,6 +87,9 @@ class _Pages:
 
     async def page(self, request: Request) -> Response:
         return FileResponse(STATIC / "index.html", media_type="text/html")
+
+    async def film_reader(self, request: Request) -> Response:
+        return Response(FILM_READER.read_bytes(), media_type="text/javascript")
 
     async def state(self, request: Request) -> Response:
         return JSONResponse(self._house.state())

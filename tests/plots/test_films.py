@@ -240,7 +240,7 @@ def test_a_page_needs_nothing_but_itself(make_motion: Callable[..., Motion], tmp
     assert not any({"src", "href", "srcset", "data"} & set(attributes) for _, attributes in page.tags)
     assert "default-src 'none'" in str(dict(page.tags)["meta"] | {"all": text[:600]})
     assert page.text["title"].startswith("</script><b>")
-    film = json.loads(re.search(r"const film = (\{.*\});\n", page.text["script"])[1])  # type: ignore[index]
+    film = json.loads(re.search(r"const film = unpacked\((\{.*\})\);\n", page.text["script"])[1])  # type: ignore[index]
     assert film["name"] == name
     poses = np.frombuffer(base64.b64decode(film["poses"]), "<i2").reshape(-1, film["nodes"], 3) * film["scale"]
     np.testing.assert_allclose(poses, motion.nodes_mm(motion.trajectory.times_s), atol=film["scale"])

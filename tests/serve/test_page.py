@@ -7,7 +7,9 @@ import json
 import os
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib import resources
+from math import radians
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,9 @@ from PIL import Image
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from benchmarks.browser.chromium import executable
+from planner.arms.arm_file import load_arm
+from planner.arms.arm_text import arm_toml
+from planner.arms.paper_pose import PaperPose
 from planner.cli import main as command
 from planner.serve.asked import arguments_of
 from planner.trajectory import read_trajectory
@@ -194,6 +199,57 @@ def test_the_sheet_shows_where_the_planner_puts_a_drawing(
             mm = 1.0 if has_page else 96.0 / 25.4  # of a drawing without a page, units are pixels
             wanted = [[e, f], [e + mm * a, f + mm * b], [e + mm * c, f + mm * d]]
             assert shown == [pytest.approx(point, abs=2e-3) for point in wanted], options
+
+
+STANDS = """async ([key, arm]) => {
+  const [{ ArmView }, { unpacked }, { Vector3 }] = await Promise.all(
+    ["arm_view.js", "film.js", "vendor/three.js"].map((name) => import(`/static/${name}`)));
+  const [film, told] = await Promise.all([`/api/jobs/${key}/motion`, `/api/arms/${arm}`].map(
+    (path) => fetch(path).then((response) => response.json())));
+  const canvas = document.body.appendChild(document.createElement("canvas"));
+  canvas.style.height = "300px";
+  const view = new ArmView(canvas, null);
+  view.show(unpacked(film), told);
+  view.at(film.end / 2, film.n_samples / 2);
+  await new Promise((done) => setTimeout(done, 500));
+  view.scene.updateMatrixWorld(true);
+  const out = (object) => new Vector3(0, 0, 1).transformDirection(object.matrixWorld).toArray();
+  const [floor] = view.world.children.filter(({ type }) => type === "GridHelper");
+  const inWorld = (z) => view.onPaper.localToWorld(new Vector3(...film.paper[0], z));
+  const seen = (z) => inWorld(z).project(view.camera);
+  canvas.remove();
+  return {
+    normal: out(view.onPaper),
+    floor: floor.position.z,
+    lowest: Math.min(...film.paper.map(([x, y]) => view.onPaper.localToWorld(new Vector3(x, y, 0)).z)),
+    in_sight: Math.max(...["x", "y"].map((axis) => Math.abs(seen(0)[axis]))),
+    is_seen_from_the_front: seen(10).z < seen(0).z,
+    last_link_at: view.pen[1].getWorldPosition(new Vector3()).toArray(),
+  };
+}"""
+"""How the arm and its paper stand in the three dimensional view halfway through a plan."""
+
+
+@pytest.mark.parametrize("tilt", [0.0, -40.0, -90.0, -180.0])
+def test_the_paper_stands_on_the_floor_as_in_the_world(browser: Browser, tmp_path: Path, tilt: float) -> None:
+    paper = (
+        PaperPose(100.0, 0.0, 230.0, tilt_y_rad=radians(tilt))
+        if tilt == -180
+        else (PaperPose(190.0, 0.0, 80.0, tilt_y_rad=radians(tilt)) if tilt else PaperPose())
+    )
+    arm = replace(load_arm("six_joint"), name="board", paper=paper)
+    with Server(tmp_path, "--demo") as server:
+        (tmp_path / "arms" / "board.toml").write_text(arm_toml(arm), encoding="utf-8")
+        job = server.planned(arm="board")
+        page = browser.new_page()
+        page.goto(server.address)
+        seen = page.evaluate(STANDS, [job["id"], "board"])
+        page.close()
+    assert seen["normal"] == pytest.approx(paper.normal.tolist(), abs=1e-6)
+    assert seen["floor"] < min(0.0, seen["lowest"]) + 1e-6
+    assert seen["in_sight"] < 1 and seen["is_seen_from_the_front"]
+    tip = np.linalg.inv(paper.T_base_paper) @ [*seen["last_link_at"], 1.0]
+    assert 0.0 < tip[2] < 60.0  # the pen, over the paper
 
 
 def test_pens_are_asked_for_and_put_in(page: Page) -> None:

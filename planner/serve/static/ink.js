@@ -5,11 +5,23 @@ import { brushOf, element } from "./dom.js";
 const PAD = 4;
 const LARGEST = 3000;
 
+const LIGHT = 0.7;
+
+/** A colour of ink, darker where it could not be told from the paper. */
+export function seenOnPaper(colour) {
+  const channels = /^#([0-9a-f]{2})([0-9a-f]{2})([0-9a-f]{2})$/i.exec(colour)?.slice(1).map((hex) => parseInt(hex, 16));
+  if (!channels) return colour;
+  const brightness = (0.2126 * channels[0] + 0.7152 * channels[1] + 0.0722 * channels[2]) / 255;
+  if (brightness <= LIGHT) return colour;
+  return `rgb(${channels.map((channel) => Math.round((channel * LIGHT) / brightness)).join(" ")})`;
+}
+
 export class Ink {
   /** lines: of the server. Paths of one colour in a row are one. */
   constructor(lines) {
     this.paths = [];
-    for (const { points, colour } of lines.lines) {
+    for (const { points, colour: of } of lines.lines) {
+      const colour = seenOnPaper(of);
       let last = this.paths.at(-1);
       if (last?.colour !== colour || last.count > 400) this.paths.push((last = { colour, path: new Path2D(), count: 0 }));
       last.count += points.length;
@@ -93,7 +105,7 @@ export class Reel {
     reel.lineCap = reel.lineJoin = "round";
     for (const { path, colour, width: of } of strokes.slice(this.count, count)) {
       reel.lineWidth = Math.max(of || 0.3, px);
-      reel.strokeStyle = colour;
+      reel.strokeStyle = seenOnPaper(colour);
       reel.stroke(path);
     }
     this.count = count;

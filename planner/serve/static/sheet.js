@@ -276,7 +276,7 @@ function zoneOf(arm, mm) {
 }
 
 function drawBase(context, [x, y], colour, px) {
-  context.fillStyle = colour("--link");
+  context.fillStyle = colour("--knuckle");
   context.beginPath();
   context.arc(x, y, 5 * px + 3, 0, 2 * Math.PI);
   context.fill();
