@@ -50,6 +50,7 @@ def application(house: House, names: frozenset[str], token: str | None) -> Starl
         Route("/api/jobs/{id}/motion", _plainly(pages.motion)),
         Route("/api/jobs/{id}/trajectory", _plainly(pages.trajectory)),
         Route("/api/jobs/{id}/plan", _plainly(pages.plan), methods=["POST"]),
+        Route("/api/jobs/{id}/command", _plainly(pages.command), methods=["POST"]),
         Route("/api/jobs/{id}/cancel", _plainly(pages.cancel), methods=["POST"]),
         Route("/api/jobs/{id}/run", _plainly(pages.run), methods=["POST"]),
         Route("/api/run/{wish}", _plainly(pages.wish), methods=["POST"]),
@@ -139,6 +140,9 @@ class _Pages:
         self._house.refuse_while_drawn(job.id, job.name)
         self._house.planning.plan(job, asked)
         return JSONResponse(self._house.job_state(job), 202)
+
+    async def command(self, request: Request) -> Response:
+        return JSONResponse({"command": self._house.planning.command(self._job(request), await _asked(request))})
 
     async def cancel(self, request: Request) -> Response:
         self._house.planning.cancel(self._job(request))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict
@@ -93,7 +94,8 @@ class House:
             raise UsageError(f"{job.name} is not planned yet")
 
         def ended(how: str, complete: bool) -> None:
-            job.drawn = [*job.drawn, how][-_MOST_RUNS:]
+            run = {"at": time.time(), "driver": str(asked.get("driver", SIMULATED)), "how": how}
+            job.drawn = [*job.drawn, run][-_MOST_RUNS:]
             self.store.keep(job)
             self.tell_job(job)
 

@@ -35,8 +35,12 @@ class Planning:
         """Begin to plan, in the place of what was being done with the job. Errors: UsageError for options that mean
         nothing."""
         words = arguments_of(asked, self._arms.word)
-        job.options, job.command = dict(asked), command_of(job.name, job.trajectory_name, words)
+        job.options, job.command = dict(asked), self.command(job, asked)
         self._begin(job, State.PLANNING, lambda: self._plan(job, words))
+
+    def command(self, job: Job, asked: Mapping[str, Any]) -> str:
+        """What `plan` would do, for a terminal. Errors: UsageError for options that mean nothing."""
+        return command_of(job.name, job.trajectory_name, arguments_of(asked, self._arms.word))
 
     def cancel(self, job: Job) -> None:
         """Leave it; what had been planned before is kept."""

@@ -42,8 +42,8 @@ _UNSETTLED = {State.READING: State.FAILED, State.PLANNING: State.READ}
 @dataclass(slots=True)
 class Job:
     """One drawing. options: of the plan, as the page gave them; command: the same for a terminal; error: why it could
-    not be read or planned; notes: warnings; progress: share of the plan that is done; drawn: how its runs ended, the
-    newest last."""
+    not be read or planned; notes: warnings; progress: share of the plan that is done; drawn: its runs, the newest
+    last: when they ended (at, s since the epoch), the driver, and how."""
 
     id: str
     name: str
@@ -56,7 +56,7 @@ class Job:
     summary: list[str] = field(default_factory=list)
     stage: str = ""
     progress: float = 0.0
-    drawn: list[str] = field(default_factory=list)
+    drawn: list[dict[str, Any]] = field(default_factory=list)
 
     @property
     def trajectory_name(self) -> str:
@@ -120,6 +120,7 @@ class Store:
                 if job.id != folder.name or not _ID.fullmatch(job.id) or job.name != safe_name(job.name):
                     continue
                 job.state = State(job.state)
+                job.drawn = [run for run in job.drawn if isinstance(run, dict)]
                 if job.state in _UNSETTLED:
                     job.state, job.error = _UNSETTLED[job.state], "the server ended meanwhile"
                 yield job

@@ -145,6 +145,62 @@ def test_a_drawing_is_moved_sized_and_turned_by_hand_and_lands_there(page: Page,
     assert placement(page)["at-x"] is None
 
 
+def test_what_has_changed_since_it_was_planned_is_not_drawn(page: Page) -> None:
+    give(page)
+    expect(page.locator("#command")).to_have_text("plan square.svg --arm=drawing_arm -o square.csv")
+    plan(page)
+    page.focus("#sheet")
+    page.keyboard.press("ArrowLeft")
+    expect(page.locator("#plan-stale")).to_be_visible()
+    expect(page.locator("#run")).to_be_disabled()
+    expect(page.locator("#plan-box")).to_be_hidden()
+    expect(page.locator("#command")).to_contain_text(" --at ")
+    page.click("#unchange")
+    expect(page.locator("#plan-stale")).to_be_hidden()
+    expect(page.locator("#run")).to_be_enabled()
+    expect(page.locator("#film")).to_be_visible()
+    expect(page.locator("#command")).not_to_contain_text(" --at ")
+
+
+def test_joints_are_shown_under_the_arm_with_their_extremes_and_limits(page: Page) -> None:
+    give(page)
+    plan(page)
+    expect(page.locator("#joints-view")).to_be_hidden()
+    page.click("#tab-arm")
+    expect(page.locator("#joints-view")).to_be_visible()
+    rows = page.locator("#joints-table tr")
+    assert rows.count() == len(load_arm("drawing_arm").joints)
+    for cell in rows.first.locator("td").all_inner_texts()[1:]:
+        most, limit = re.findall(r"[0-9.]+", cell)
+        assert 0 < float(most) <= float(limit)
+    before = page.locator("#joints-view").screenshot()
+    page.select_option("#quantity", "speed")
+    page.wait_for_timeout(300)
+    assert page.locator("#joints-view").screenshot() != before
+
+
+def test_the_command_is_copied(page: Page) -> None:
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    give(page)
+    expect(page.locator("#command")).to_contain_text("plan square.svg")
+    page.click("#command-box .copy")
+    expect(page.locator("#command-box .copied")).to_have_text("copied")
+    assert page.evaluate("navigator.clipboard.readText()") == page.locator("#command").inner_text()
+
+
+def test_a_run_is_told_of_its_own_drawing_and_drawn_again(page: Page) -> None:
+    give(page)
+    plan(page)
+    page.click("#run")
+    expect(page.locator("#run-says")).to_contain_text("played", timeout=SLOW_MS)
+    expect(page.locator("#run")).to_have_text("Draw again")
+    expect(page.locator("#runs li")).to_have_text(re.compile("sim: played"))
+    give(page, TWO_PENS, "other.svg")
+    plan(page)
+    expect(page.locator("#run-says")).to_have_text("")
+    expect(page.locator("#run")).to_have_text("Draw")
+
+
 def placement(page: Page) -> dict[str, Any]:
     return {
         name: float(value) if (value := page.input_value(f"[name={name}]")) else None
@@ -368,7 +424,7 @@ def test_people_with_any_senses_can_use_it(browser: Browser, server: Server, vie
     page.goto(server.address)
     give(page)
     plan(page)
-    for view in ("#tab-sheet", "#tab-arm", "#tab-joints", "text=Jog", "text=Calibrate"):
+    for view in ("#tab-sheet", "#tab-arm", "text=Jog", "text=Calibrate"):
         page.click(view)
         if view == "text=Jog":
             page.click("#jog-start")

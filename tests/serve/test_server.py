@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -121,7 +122,9 @@ def test_a_run_pauses_goes_on_and_stops_and_another_resumes_it(server: Server, p
     run = server.run("idle")
     assert run["ended"] == "played" and run["complete"]
     assert not server.job(job["id"])["resumable"]
-    assert server.job(job["id"])["drawn"][-2:] == ["stopped", "played"]
+    drawn = server.job(job["id"])["drawn"][-2:]
+    assert [(run["driver"], run["how"]) for run in drawn] == [("sim", "stopped"), ("sim", "played")]
+    assert time.time() - 60 < drawn[0]["at"] <= drawn[1]["at"] <= time.time()
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import { get, post, remove, upload, watch } from "./api.js";
 import { ArmView } from "./arm_view.js";
 import { CalibrationPage } from "./calibration_page.js";
-import { $, element, item, offer, say, tried } from "./dom.js";
+import { $, copyable, element, item, offer, say, tried } from "./dom.js";
 import { unpacked } from "./film.js";
 import { JogPage } from "./jog_page.js";
 import { JointsView } from "./joints_view.js";
@@ -21,6 +21,8 @@ const arms = new Map();
 const lines = new Map();
 let [current, run, film, filmOf, linesOf] = [null, null, null, null, null];
 let [time, plays, last] = [0, false, 0];
+let isStale = false; // whether options have changed since the current drawing was planned
+let commandSoon = 0;
 
 const sheet = new Sheet($("sheet"), (moved) => {
   field("at-x").value = moved ? moved.at[0] : "";
@@ -34,7 +36,7 @@ const layers = new Layers($("layers"), () => {
   placeChanged();
 });
 const armView = new ArmView($("arm-view"), $("arm-says"));
-const jointsView = new JointsView($("joints-view"));
+const jointsView = new JointsView($("joints-view"), $("joints-table"));
 const jogPage = new JogPage();
 const calibrationPage = new CalibrationPage();
 
@@ -72,7 +74,8 @@ function asked() {
 }
 
 function showOptions(options) {
-  form.reset();
+  for (const name of [...NUMBERS, ...CHOICES, "at-x", "at-y", "scale"]) field(name).value = name === "rotate" ? 0 : "";
+  isStale = false;
   if (options.arm) $("arm").value = options.arm;
   if (options.at) [field("at-x").value, field("at-y").value] = options.at;
   if (options.scale) field("scale").value = Number((100 * options.scale).toFixed(3));
@@ -82,15 +85,50 @@ function showOptions(options) {
 
 function placeChanged() {
   forgetFilm();
+  isStale = Boolean(jobs.get(current)?.command);
+  showWhatCanRun();
   sheet.show({ options: placement() });
   sayPlace();
+  sayCommand();
+}
+
+/** As it was when it was planned. */
+async function unchange() {
+  const job = jobs.get(current);
+  showAsked(job);
+  showJob(job);
+  await showArm();
+  await showFilm(job);
+}
+
+function showAsked(job) {
+  showOptions(job.options);
+  if (linesOf) layers.show(linesOf, job.options.layers ?? "");
+  sheet.show({ options: placement(), ...(linesOf && { lines: layers.of(linesOf) }) });
+  sayPlace();
+}
+
+/** What would be typed for the options as they stand, once they stand still. */
+function sayCommand() {
+  clearTimeout(commandSoon);
+  commandSoon = setTimeout(async () => {
+    const id = current;
+    if (!id || jobs.get(id)?.state === "reading") return showCommand("");
+    const { command } = await post(`/api/jobs/${id}/command`, asked()).catch(() => ({}));
+    if (command && id === current && jobs.get(id)?.state !== "planning") showCommand(command);
+  }, 250);
+}
+
+function showCommand(command) {
+  $("command-box").hidden = !command;
+  $("command").textContent = command;
 }
 
 function sayPlace() {
   const says = $("sheet-says");
   const found = sheet.placement;
   says.className = "";
-  if (!found) return void (says.textContent = sheet.arm?.refusal ?? "");
+  if (!found) return void (says.textContent = sheet.arm?.refusal ?? (current ? "" : "Drop a drawing on this page to begin."));
   const [width, height] = found.size.map((side) => (side * found.factor).toFixed(1));
   const over = found.over > 0.01 ? ` It goes ${found.over.toFixed(1)} mm over the edge of what can be drawn on.` : "";
   says.className = over ? "bad" : "";
@@ -118,6 +156,7 @@ async function choose(id) {
     showOptions(job.options);
   }
   showJob(job);
+  if (run) showRun();
   await Promise.all([showArm(), showLines(job)]);
   sheet.show({ options: placement() });
   await showFilm(job);
@@ -129,9 +168,10 @@ async function showNothing() {
   layers.show(null, "");
   sheet.show({ lines: null, options: placement() });
   forgetFilm();
-  for (const id of ["command-box", "run-box", "progress", "cancel"]) $(id).hidden = true;
+  for (const id of ["command-box", "plan-box", "run-box", "progress", "cancel", "plan-stale"]) $(id).hidden = true;
   $("plan-says").textContent = "";
   await showArm();
+  sayPlace();
 }
 
 async function showLines(job) {
@@ -168,7 +208,7 @@ function forgetFilm() {
   showPens($("pens"), []);
   armView.show(null);
   jointsView.show(null);
-  $("film").hidden = true;
+  showFilmParts();
 }
 
 async function showFilm(job) {
@@ -182,9 +222,27 @@ async function showFilm(job) {
   showPens($("pens"), film.pens);
   armView.show(film, arm);
   jointsView.show(film);
-  $("film").hidden = false;
+  showFilmParts();
   Object.assign($("time"), { min: film.begin, max: film.end });
   seek(film.end);
+}
+
+/** What there is to see of a film. */
+function showFilmParts() {
+  const isArm = $("tab-arm").getAttribute("aria-selected") === "true";
+  $("film").hidden = !film;
+  $("view-joints").hidden = !film || !isArm;
+  $("arm-waits").hidden = film !== null;
+}
+
+/** What has changed is planned again before it is drawn. */
+function showWhatCanRun() {
+  const isPlanned = jobs.get(current)?.state === "planned";
+  $("plan-stale").hidden = !isStale || !isPlanned;
+  $("plan-box").hidden = isStale || !isPlanned;
+  const isBusy = run !== null && (run.stand !== "idle" || jogPage.runs);
+  for (const id of ["run", "resume", "frame"]) $(id).disabled = isBusy || isStale;
+  sheet.isLocked = isBusy && run.job === current;
 }
 
 function showJob(job) {
@@ -203,13 +261,18 @@ function showJob(job) {
   $("plan-notes").replaceChildren(...[...(job.state === "planned" ? job.summary.slice(1) : []), ...job.notes].map(item));
   const isPlanned = job.state === "planned";
   $("picture-box").hidden = job.name.endsWith(".svg") || job.name.endsWith(".svgz");
-  $("command-box").hidden = !job.command;
-  $("command").textContent = job.command;
-  $("download").hidden = !isPlanned;
+  if (job.command && !isStale) showCommand(job.command);
+  else sayCommand();
   Object.assign($("download"), { href: `/api/jobs/${job.id}/trajectory`, download: job.trajectory });
   $("run-box").hidden = !isPlanned;
   $("resume").hidden = !job.resumable;
+  $("run").textContent = job.drawn.length ? "Draw again" : "Draw";
+  $("runs-box").hidden = !job.drawn.length;
+  $("runs").replaceChildren(...job.drawn.toReversed().map(({ at, driver, how }) => item(`${when(at)}, ${driver}: ${how}`)));
+  showWhatCanRun();
 }
+
+const when = (seconds) => new Date(1000 * seconds).toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
 
 const STANDS = {
   idle: "", starting: "connecting", playing: "drawing", paused: "paused, pen up", "awaiting pen": "waiting for a pen",
@@ -223,7 +286,7 @@ function drawJobs() {
     const choice = Object.assign(document.createElement("button"), { type: "button", className: "job" });
     const [name, state] = [document.createElement("span"), document.createElement("small")];
     name.textContent = job.name;
-    const drawn = job.drawn.length ? `, ${job.drawn.at(-1)}` : "";
+    const drawn = job.drawn.length ? `, ${job.drawn.at(-1).how}` : "";
     state.textContent = (run?.job === job.id && run.stand !== "idle" ? STANDS[run.stand] : SAYS[job.state]) + drawn;
     choice.append(name, state);
     choice.setAttribute("aria-current", String(job.id === current));
@@ -255,6 +318,7 @@ async function jobChanged(job) {
   if (job.gone && current === job.id) return choose([...jobs.keys()].at(-1) ?? null);
   drawJobs();
   if (job.id !== current) return;
+  if (job.state === "planning" && before?.state !== "planning") showAsked(job); // another page may have asked
   showJob(job);
   if (before?.state !== job.state) {
     if (job.state !== "planned") forgetFilm();
@@ -316,17 +380,21 @@ function runChanged(now) {
   $("pen").textContent = `${run.pen} is in: go on`;
   $("stop").hidden = !runs;
   $("hold").hidden = !runs && !jogs;
-  for (const id of ["run", "resume", "frame"]) $(id).disabled = runs || jogs;
-  if (run.job === current) {
-    $("run-says").className = !runs && run.ended ? (run.complete ? "good" : "bad") : "";
-    $("run-says").textContent = runs ? STANDS[run.stand] : run.ended;
-    $("run-notes").replaceChildren(...[...(runs ? run.link : run.lines)].map(item));
-    if (runs && film && filmOf === run.job && run.total) {
-      plays = false;
-      seek(run.sample / film.rate);
-    }
-  }
+  showRun();
   if (before?.stand !== run.stand) drawJobs();
+}
+
+/** Of the drawing that is shown. */
+function showRun() {
+  const isOwn = run.job === current;
+  const runs = isOwn && run.stand !== "idle";
+  showWhatCanRun();
+  say($("run-says"), runs ? STANDS[run.stand] : isOwn ? run.ended : "", isOwn && !runs && run.ended ? (run.complete ? "good" : "bad") : "");
+  $("run-notes").replaceChildren(...(runs ? run.link : isOwn ? run.lines : []).map(item));
+  if (runs && film && filmOf === run.job && run.total) {
+    play(false);
+    seek(run.sample / film.rate);
+  }
 }
 
 function jogChanged(jog) {
@@ -367,6 +435,7 @@ function page() {
     else link.removeAttribute("aria-current");
   }
   document.querySelector(".skip").hidden = name !== "draw";
+  $("arm-choice").hidden = name !== "draw";
   sheet.draw();
   armView.draw();
   jointsView.draw();
@@ -377,6 +446,7 @@ async function start() {
   simulators = state.simulators;
   drivers = state.drivers;
   offer($("driver"), drivers);
+  showPort();
   armsChanged(state.arms);
   calibrationPage.show(state.calibration);
   jobs.clear();
@@ -387,18 +457,22 @@ async function start() {
   runChanged(run); // by now the film is there
 }
 
+/** Simulated arms have none. */
+const showPort = () => ($("port-box").hidden = simulators.includes($("driver").value));
+
 function tab(name) {
-  for (const each of ["sheet", "arm", "joints"]) {
+  for (const each of ["sheet", "arm"]) {
     $(`view-${each}`).hidden = each !== name;
     $(`tab-${each}`).setAttribute("aria-selected", String(each === name));
     $(`tab-${each}`).tabIndex = each === name ? 0 : -1;
   }
+  showFilmParts();
   sheet.draw();
   armView.draw();
   jointsView.draw();
 }
 
-for (const name of ["sheet", "arm", "joints"]) $(`tab-${name}`).addEventListener("click", () => tab(name));
+for (const name of ["sheet", "arm"]) $(`tab-${name}`).addEventListener("click", () => tab(name));
 document.querySelector("[role=tablist]").addEventListener("keydown", (event) => {
   const tabs = [...event.currentTarget.children];
   const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
@@ -439,7 +513,10 @@ $("fit").addEventListener("click", () => {
   placeChanged();
 });
 $("cancel").addEventListener("click", () => tried($("plan-says"), () => post(`/api/jobs/${current}/cancel`)));
-$("copy").addEventListener("click", () => navigator.clipboard?.writeText($("command").textContent));
+$("unchange").addEventListener("click", unchange);
+$("driver").addEventListener("change", showPort);
+$("quantity").addEventListener("change", (event) => jointsView.showQuantity(event.target.value));
+for (const text of document.querySelectorAll("pre")) copyable(text);
 $("show-map").addEventListener("change", (event) => {
   sheet.showsMap = event.target.checked;
   sayMap();

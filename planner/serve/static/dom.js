@@ -23,6 +23,24 @@ export async function tried(place, work) {
   }
 }
 
+/** Puts a button behind a text that copies it, also where a page may not write to the clipboard by itself. */
+export function copyable(text) {
+  const button = element("button", "Copy", { type: "button", className: "copy" });
+  const says = element("span", "", { className: "quiet copied" });
+  says.setAttribute("role", "status");
+  button.addEventListener("click", async () => {
+    try {
+      await navigator.clipboard.writeText(text.textContent);
+    } catch {
+      getSelection().selectAllChildren(text);
+      document.execCommand("copy");
+    }
+    says.textContent = "copied";
+    setTimeout(() => (says.textContent = ""), 3000);
+  });
+  text.after(button, says);
+}
+
 /** Offers names to choose from, and keeps what was chosen where that is still there. */
 export function offer(select, names) {
   const chosen = select.value;

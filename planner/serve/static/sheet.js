@@ -16,6 +16,8 @@ export class Sheet {
     this.changed = changed;
     this.arm = this.lines = this.options = this.film = null;
     this.showsMap = false;
+    /** Whether the drawing is left where it is: while an arm draws it. */
+    this.isLocked = false;
     this.until = Infinity;
     this.drag = null;
     new ResizeObserver(() => this.draw()).observe(canvas);
@@ -87,7 +89,8 @@ export class Sheet {
     drawBase(context, baseOf(this.arm, mm), colour, px);
     if (this.film) this.#drawFilm(context, mm, px);
     else if (placement) this.#drawLines(context, placement, colour);
-    if (placement && !this.film) this.#drawHandles(context, placement, px, colour);
+    const isWhole = !this.film || this.until >= this.film.n_samples - 1.5;
+    if (placement && isWhole && !this.isLocked) this.#drawHandles(context, placement, px, colour);
     drawRuler(context, this.view, width, height, ratio, colour);
   }
 
@@ -143,7 +146,7 @@ export class Sheet {
 
   #grab(event) {
     const placement = this.placement;
-    if (!placement || this.film || !this.view) return;
+    if (!placement || this.isLocked || !this.view) return;
     const place = this.#place(event);
     const near = ([x, y]) => Math.hypot(place[0] - x, place[1] - y) * this.view.scale < 2.2 * HANDLE;
     const corner = cornersOf(placement).findIndex(near);
@@ -203,7 +206,7 @@ export class Sheet {
 
   #key(event) {
     const placement = this.placement;
-    if (!placement || this.film) return;
+    if (!placement || this.isLocked) return;
     const step = event.shiftKey ? 10 : 1;
     const move = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step] }[event.key];
     const middle = placement.corner.map((edge, axis) => edge + (placement.size[axis] * placement.factor) / 2);
