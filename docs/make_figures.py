@@ -48,7 +48,7 @@ FIRST_HOUR = {
 }
 """What each is made of, of what the first hour leaves."""
 SYMPTOMS = "symptoms.png"
-PAGE = tuple(f"page-{view}.png" for view in ("sheet", "map", "arm", "joints", "phone", "jog", "calibrate"))
+PAGE = tuple(f"page-{view}.png" for view in ("sheet", "map", "arm", "phone", "jog", "calibrate"))
 ARMS = tuple(f"arm-{path.stem}.png" for path in sorted((ROOT / "configs").glob("*.toml")))
 LANTERN = ROOT / "examples" / "lantern.svg"
 FILLS = {

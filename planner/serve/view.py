@@ -50,7 +50,6 @@ def arm_view(arm: Arm) -> dict[str, Any]:
     return arm_description(arm) | {
         "canvas_mm": paper.corners_arm_mm.round(3).tolist(),
         "reach_mm": [round(edge, 3) for edge in paper.reach_mm],
-        "is_ring": paper.is_ring,
         "base_mm": arm.paper.T_paper_base[:2, 3].round(3).tolist(),
         "home": (home[0] / arm.per_file_unit).round(4).tolist(),
         "map": {

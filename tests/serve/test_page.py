@@ -162,6 +162,18 @@ def test_what_has_changed_since_it_was_planned_is_not_drawn(page: Page) -> None:
     expect(page.locator("#command")).not_to_contain_text(" --at ")
 
 
+def test_an_arm_that_is_worked_out_late_does_not_undo_its_plan(page: Page) -> None:
+    page.route("**/api/arms/scara", lambda route: (page.wait_for_timeout(4000), route.continue_()))
+    give(page)
+    page.select_option("#arm", "scara")
+    page.fill("[name=rotate]", "5")
+    expect(page.locator("#sheet-says")).to_contain_text("Working out what scara reaches")
+    plan(page)
+    page.wait_for_timeout(1500)
+    expect(page.locator("#run")).to_be_enabled()
+    expect(page.locator("#film")).to_be_visible()
+
+
 def test_joints_are_shown_under_the_arm_with_their_extremes_and_limits(page: Page) -> None:
     give(page)
     plan(page)

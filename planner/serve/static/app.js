@@ -127,7 +127,9 @@ function showCommand(command) {
 function sayPlace() {
   const says = $("sheet-says");
   const found = sheet.placement;
+  const name = $("arm").value;
   says.className = "";
+  if (sheet.arm?.chosen !== name) return void (says.textContent = `Working out what ${name} reaches …`);
   if (!found) return void (says.textContent = sheet.arm?.refusal ?? (current ? "" : "Drop a drawing on this page to begin."));
   const [width, height] = found.size.map((side) => (side * found.factor).toFixed(1));
   const over = found.over > 0.01 ? ` It goes ${found.over.toFixed(1)} mm over the edge of what can be drawn on.` : "";
@@ -187,7 +189,7 @@ async function showLines(job) {
 
 async function showArm() {
   const name = $("arm").value;
-  if (sheet.arm?.chosen !== name) $("sheet-says").textContent = `Working out what ${name} reaches …`;
+  sayPlace();
   if (!arms.has(name)) {
     const found = get(`/api/arms/${name}`).catch((error) => ({ name, refusal: error.message }));
     arms.set(name, found.then((arm) => ({ ...arm, chosen: name })));
@@ -305,7 +307,7 @@ async function add(files) {
   for (const file of files) {
     await tried($("plan-says"), async () => {
       const job = await upload(file);
-      jobs.set(job.id, job);
+      if (!jobs.has(job.id)) jobs.set(job.id, job); // else it has been told of later
       await choose(job.id);
     });
   }
@@ -495,10 +497,9 @@ document.addEventListener("drop", (event) => {
   document.body.classList.remove("over");
   add([...event.dataTransfer.files]);
 });
-$("arm").addEventListener("change", async () => {
-  forgetFilm();
-  await showArm();
+$("arm").addEventListener("change", () => {
   placeChanged();
+  showArm();
 });
 form.addEventListener("input", (event) => {
   if (!event.target.closest("#run-box")) placeChanged();
@@ -506,7 +507,11 @@ form.addEventListener("input", (event) => {
 form.addEventListener("submit", (event) => {
   event.preventDefault();
   if (!current) return void ($("plan-says").textContent = "Drop a drawing first.");
-  tried($("plan-says"), () => post(`/api/jobs/${current}/plan`, asked()));
+  tried($("plan-says"), async () => {
+    await post(`/api/jobs/${current}/plan`, asked());
+    isStale = false;
+    showWhatCanRun();
+  });
 });
 $("fit").addEventListener("click", () => {
   for (const name of ["at-x", "at-y", "scale"]) field(name).value = "";

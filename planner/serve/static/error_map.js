@@ -40,12 +40,13 @@ export class ErrorMap {
     const [least, most] = this.range;
     for (let i = 0; i + 1 < x.length; i++) {
       for (let j = 0; j + 1 < x[i].length; j++) {
-        if (error[i][j] === null) continue;
+        const known = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].filter(([k, l]) => error[k][l] !== null);
+        if (error[i][j] === null || known.length < 3) continue;
         const share = Math.min(Math.max((error[i][j] - least) / (most - least || 1), 0), 1);
         const colour = LEAST.map((channel, k) => Math.round(channel + share * (MOST[k] - channel)));
         context.fillStyle = context.strokeStyle = `rgb(${colour.join(" ")})`;
         context.beginPath();
-        for (const [k, l] of [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]]) context.lineTo(mm.left - y[k][l], mm.far - x[k][l]);
+        for (const [k, l] of known) context.lineTo(mm.left - y[k][l], mm.far - x[k][l]);
         context.fill();
         context.stroke();
       }

@@ -82,8 +82,8 @@ export class JogPage {
 
   #fill(row, joint) {
     const unit = joint.unit === "deg" ? "°" : " mm";
-    const [at, low, high] = [joint.at, joint.min, joint.max].map((value) => `${value.toFixed(1)}${unit}`);
-    row.querySelector(".at").textContent = `${at} (${low} to ${high}), ${joint.told.toFixed(0)} ${joint.told_unit}`;
+    const [at, low, high] = [joint.at, joint.min, joint.max].map((value) => `${value.toFixed(1).replace("-", "−")}${unit}`);
+    row.querySelector(".at").textContent = `${at} (${low} to ${high}), ${joint.told.toFixed(0)} ${joint.told_unit.replace("us", "µs")}`;
     const range = row.querySelector("meter");
     Object.assign(range, { min: joint.min, max: joint.max, value: joint.at });
     range.setAttribute("aria-label", `${joint.name}: ${at}`);

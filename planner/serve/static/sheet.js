@@ -253,29 +253,34 @@ function viewOf(arm, mm, placement, width, height) {
 /** Where the base stands on the sheet. */
 const baseOf = ({ base_mm: [x, y] }, mm) => [mm.left - y, mm.far - x];
 
-/** What the pen reaches: a half ring, or row by row what the map has of it. */
+/** What the pen reaches, row by row as the map has it: what is known of a row and of the next is joined at its ends. */
 function zoneOf(arm, mm) {
   const zone = new Path2D();
-  const [x, y] = baseOf(arm, mm);
-  if (arm.is_ring) {
-    const [inner, outer] = arm.reach_mm;
-    zone.arc(x, y, outer, Math.PI, 2 * Math.PI);
-    zone.arc(x, y, inner, 2 * Math.PI, Math.PI, true);
-    return zone;
-  }
   const { x_mm: xs, y_mm: ys, error_mm: error } = arm.map;
-  const at = (i, j) => [mm.left - ys[i][j], mm.far - xs[i][j]];
-  for (let i = 0; i + 1 < xs.length; i++) {
-    for (let j = 0; j + 1 < xs[i].length; j++) {
-      const begin = j;
-      while (j + 1 < xs[i].length && error[i][j] !== null) j++;
-      if (j === begin) continue;
-      zone.moveTo(...at(i, begin));
-      for (let k = begin + 1; k <= j; k++) zone.lineTo(...at(i, k));
-      for (let k = j; k >= begin; k--) zone.lineTo(...at(i + 1, k));
+  const at = ([i, j]) => [mm.left - ys[i][j], mm.far - xs[i][j]];
+  const known = error.map((row, i) => spansOf(row).map(([begin, end]) => Array.from({ length: end - begin + 1 }, (_, k) => [i, begin + k])));
+  for (let i = 0; i + 1 < known.length; i++) {
+    for (const one of known[i]) {
+      for (const next of known[i + 1]) {
+        const isBeside = one[0][1] <= next.at(-1)[1] && next[0][1] <= one.at(-1)[1];
+        if (!isBeside) continue;
+        [...one, ...next.toReversed()].forEach((node, k) => (k ? zone.lineTo(...at(node)) : zone.moveTo(...at(node))));
+        zone.closePath();
+      }
     }
   }
   return zone;
+}
+
+/** [[first, last], ...] of what is known of a row. */
+function spansOf(row) {
+  const spans = [];
+  row.forEach((value, j) => {
+    if (value === null) return;
+    if (j && row[j - 1] !== null) spans.at(-1)[1] = j;
+    else spans.push([j, j]);
+  });
+  return spans;
 }
 
 function drawBase(context, [x, y], colour, px) {
