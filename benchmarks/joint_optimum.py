@@ -37,7 +37,7 @@ from planner.settings import PlanSettings
 
 _CELL_S = 0.008
 _FEWEST_CELLS, _MOST_CELLS = 3, 220
-_MOST_S = 60.0
+_MOST_S = 40.0
 """Processor time that a stroke's program may take."""
 _DEGREE = 5
 _BEYOND = 0.7

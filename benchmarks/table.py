@@ -3,8 +3,8 @@
     python benchmarks/table.py FOLDER_OF_DRAWINGS [-o docs/benchmarks.md] [--only ROWS ...] [--drawing NAME ...]
 
 The rivals come with the extra `benchmark`; a row whose rival is not installed says so. Rows about one drawing take
-prague.svg of the folder, or the drawing with the most bytes. Without --only all is measured but what takes minutes by
-itself: --only million-points, --only long-stroke.
+prague.svg of the folder, or the drawing with the most bytes. Without --only all is measured but million-points,
+long-stroke and redundancy, which take long.
 """
 
 from __future__ import annotations
@@ -67,8 +67,8 @@ MEASURES: dict[str, Measure] = {
     "million-points": lambda _, drawing, settings: scale.many_strokes(drawing, settings),
     "long-stroke": lambda _, __, settings: scale.one_stroke(settings),
 }
-LONG = ("million-points", "long-stroke")
-"""Take minutes each, and are measured only where they are named."""
+LONG = ("million-points", "long-stroke", "redundancy")
+"""Take long, change seldom, and are measured only where they are named."""
 MARK = "<!-- from here on by benchmarks/table.py -->"
 """What stands above it on a page is kept."""
 LIBRARIES = ("numpy", "scipy", "casadi", "ruckig", "toppra", "copp-py", "elkai")

@@ -19,7 +19,7 @@ from planner.motion.timed_stroke import TimedStroke
 from planner.settings import PlanSettings
 
 _STROKES = 8
-_LONGER_THAN_MM, _MOST_POINTS = 2.0, 16
+_LONGER_THAN_MM, _MOST_POINTS = 2.0, 12
 _RATE_HZ = 1000.0
 """At which rounding to whole samples is little."""
 _WORKERS = Workers(2)

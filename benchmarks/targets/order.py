@@ -30,9 +30,9 @@ from planner.travel.travel_moves import TravelRules
 from planner.travel.travel_time_metric import travel_time_metric
 
 _FEWEST, _MOST = 100, 700
-_DRAWINGS = 3
+_DRAWINGS = 2
 _NEAREST = 6
-_ROUNDS = 3
+_ROUNDS = 2
 _RUNS = 3
 _RATE_HZ = 1000.0
 """At which rounding to whole samples is next to nothing."""
