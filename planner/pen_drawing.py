@@ -12,6 +12,7 @@ from planner.arms.arm import Arm
 from planner.arrays import BoolArray, FloatArray
 from planner.counted import counted
 from planner.drawing.flatten import flatten_all
+from planner.drawing.ink import Ink
 from planner.drawing.join import join_strokes
 from planner.drawing.loops import with_loops
 from planner.drawing.metric import Metric
@@ -222,7 +223,8 @@ def _joined(strokes: list[FloatArray], join_mm: float | None, tolerance_mm: floa
     narrow_mm = NARROW_SHARE * tolerance_mm if join_mm is None else join_mm
     wide_mm = JOIN_SHARE * tolerance_mm if join_mm is None else join_mm
     leaps = Leaps(wide_mm, narrow_mm, ON_LINE_SHARE * tolerance_mm)
-    return with_loops(join_over_lines(join_strokes(strokes, wide_mm), leaps), narrow_mm)
+    ink = Ink(strokes, NARROW_SHARE * tolerance_mm)
+    return with_loops(join_over_lines(join_strokes(strokes, wide_mm), ink, leaps), ink, narrow_mm)
 
 
 def _within_reach(

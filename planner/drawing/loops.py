@@ -14,6 +14,7 @@ from itertools import chain
 import numpy as np
 
 from planner.arrays import FloatArray, IntArray
+from planner.drawing.ink import Ink
 from planner.drawing.join import LEAST_ROUND, is_closed
 from planner.polyline_length import polyline_length
 
@@ -33,11 +34,12 @@ class _Touch:
     other_mm: float
 
 
-def with_loops(strokes: Sequence[FloatArray], tolerance_mm: float) -> list[FloatArray]:
+def with_loops(strokes: Sequence[FloatArray], ink: Ink, tolerance_mm: float) -> list[FloatArray]:
     """Strokes (n, 2) in which closed ones that are within `tolerance_mm` of another stroke are drawn on its way.
 
     Each line is drawn once, and the way across to a closed stroke to and fro. What is open stays a stroke of its own,
-    with its ends. The longer strokes grow so in place; no stroke changes that touches none.
+    with its ends. The longer strokes grow so in place; no stroke changes that touches none. ink: what of the strokes
+    is line, and may be touched.
     """
     is_loop = [is_closed(stroke) or _is_nearly_closed(stroke, tolerance_mm) for stroke in strokes]
     if not any(is_loop) or len(strokes) < 2:
@@ -50,7 +52,7 @@ def with_loops(strokes: Sequence[FloatArray], tolerance_mm: float) -> list[Float
     neighbours: dict[int, list[tuple[int, float, float]]] = {}
     group = list(range(len(strokes)))
     has_open = [not loop and len(stroke) > 1 for loop, stroke in zip(is_loop, strokes, strict=True)]
-    for touch in _touches(strokes, np.flatnonzero(is_loop), tolerance_mm):
+    for touch in _touches(strokes, ink, np.flatnonzero(is_loop), tolerance_mm):
         one, other = _root(group, touch.closed), _root(group, touch.other)
         if one == other or (has_open[one] and has_open[other]):
             continue
@@ -83,12 +85,17 @@ def _root(group: list[int], index: int) -> int:
     return index
 
 
-def _touches(strokes: Sequence[FloatArray], loops: IntArray, tolerance_mm: float) -> list[_Touch]:
+def _touches(strokes: Sequence[FloatArray], ink: Ink, loops: IntArray, tolerance_mm: float) -> list[_Touch]:
     """Where closed strokes are near others: the nearest first, so that no way across leads over a line between them.
     Of those that are as near, first where others end, as there the pen comes to rest anyway."""
     import shapely  # heavy, and drawings without closed strokes need none of it
 
     lines = np.array([shapely.LineString(stroke if len(stroke) > 1 else stroke[[0, 0]]) for stroke in strokes])
+    drawn = lines.copy()
+    is_gap = np.split(ink.gaps_of(strokes), np.cumsum([len(stroke) - 1 for stroke in strokes])[:-1])
+    for index in [index for index, some in enumerate(is_gap) if some.any()]:
+        parts = np.split(strokes[index], np.flatnonzero(is_gap[index]) + 1)
+        drawn[index] = shapely.MultiLineString([part for part in parts if len(part) > 1])
     is_closed_one = np.zeros(len(strokes), dtype=np.bool_)
     is_closed_one[loops] = True
     is_open = np.array([len(stroke) > 1 for stroke in strokes]) & ~is_closed_one
@@ -100,19 +107,19 @@ def _touches(strokes: Sequence[FloatArray], loops: IntArray, tolerance_mm: float
     gaps: list[FloatArray] = []
     for owners, targets, owner_mm in (
         (np.repeat(opened, 2), ends, np.stack([np.zeros(len(opened)), shapely.length(lines[opened])], axis=1).ravel()),
-        (others, lines[others], None),
+        (others, drawn[others], None),
     ):
         if not len(targets):
             continue
         tree = shapely.STRtree(targets)
         for begin in range(0, len(loops), _AT_ONCE):
             block = loops[begin : begin + _AT_ONCE]
-            row, target = tree.query(lines[block], predicate="dwithin", distance=within_mm)
+            row, target = tree.query(drawn[block], predicate="dwithin", distance=within_mm)
             closed, other = block[row], owners[target]
             # Of two closed ones, one alone asks.
             is_asked = (closed != other) & ~(is_closed_one[other] & (other < closed))
             closed, other, target = closed[is_asked], other[is_asked], target[is_asked]
-            between = shapely.shortest_line(lines[closed], targets[target])
+            between = shapely.shortest_line(drawn[closed], targets[target])
             own_mm = shapely.line_locate_point(lines[closed], shapely.get_point(between, 0))
             other_mm = (
                 shapely.line_locate_point(lines[other], shapely.get_point(between, 1))

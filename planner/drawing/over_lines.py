@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import BoolArray, FloatArray, IntArray
+from planner.drawing.ink import Ink
 from planner.drawing.join import LEAST_ROUND, chained, free_ends
 from planner.drawing.nearest import NearestPoints
 from planner.polyline_length import polyline_length
@@ -38,9 +39,10 @@ class Leaps:
     on_line: float
 
 
-def join_over_lines(strokes: Sequence[FloatArray], leaps: Leaps) -> list[FloatArray]:
+def join_over_lines(strokes: Sequence[FloatArray], ink: Ink, leaps: Leaps) -> list[FloatArray]:
     """Strokes (n, 2) of which ends are joined over a point of one of them, the shortest ways first.
 
+    ink: what of them is line, for the point is on one.
     No line is drawn less, and there are never more strokes. The ends of one stroke may be joined over another one: it
     is closed then, and touches that.
     """
@@ -52,7 +54,7 @@ def join_over_lines(strokes: Sequence[FloatArray], leaps: Leaps) -> list[FloatAr
     points = np.array([(stroke[0], stroke[-1]) for stroke in strokes]).reshape(-1, 2)
     one, other = _neighbours(free, points, max(leaps.wide, leaps.through_air))
     if len(one):
-        ways = list(_ways(strokes, points, one, other, leaps))
+        ways = list(_ways(strokes, ink, points, one, other, leaps))
         length, pair, place = (np.concatenate(column) for column in zip(*ways, strict=True))
         for index in np.lexsort((pair, np.round(length, 9))).tolist():
             a, b = int(one[pair[index]]), int(other[pair[index]])
@@ -75,16 +77,16 @@ def _neighbours(free: IntArray, points: FloatArray, leap_mm: float) -> tuple[Int
 
 
 def _ways(
-    strokes: Sequence[FloatArray], points: FloatArray, one: IntArray, other: IntArray, leaps: Leaps
+    strokes: Sequence[FloatArray], ink: Ink, points: FloatArray, one: IntArray, other: IntArray, leaps: Leaps
 ) -> Iterator[tuple[FloatArray, IntArray, FloatArray]]:
     """Lengths of the ways that are allowed, for which pair each is, and the points (n, 2) that they go over."""
     import shapely  # heavy, and where ends are far from each other none of it is needed
 
-    lines = [stroke for stroke in strokes if len(stroke) > 1]
-    begins, ends = (np.concatenate([line[part] for line in lines]) for part in (slice(None, -1), slice(1, None)))
-    owner = np.repeat(
-        [index for index, stroke in enumerate(strokes) if len(stroke) > 1], [len(line) - 1 for line in lines]
+    is_line = ~ink.gaps_of(strokes)
+    begins, ends = (
+        np.concatenate([stroke[part] for stroke in strokes])[is_line] for part in (slice(None, -1), slice(1, None))
     )
+    owner = np.repeat(np.arange(len(strokes)), [len(stroke) - 1 for stroke in strokes])[is_line]
     leap_mm = max(leaps.wide, leaps.through_air) * (1.0 + 1e-9)
     is_way_round = np.array([polyline_length(stroke) > LEAST_ROUND * leap_mm for stroke in strokes])
     pieces = np.asarray(shapely.linestrings(np.stack((begins, ends), axis=1)))

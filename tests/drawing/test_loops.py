@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planner.arrays import FloatArray
+from planner.drawing.ink import Ink
 from planner.drawing.join import is_closed
 from planner.drawing.loops import with_loops
 from planner.polyline_length import polyline_length
@@ -35,13 +36,17 @@ def ink(strokes: Sequence[FloatArray]) -> shapely.Geometry:
     return shapely.union_all([shapely.LineString(stroke) for stroke in strokes if len(stroke) > 1])
 
 
+def led_of(strokes: list[FloatArray], near_mm: float) -> list[FloatArray]:
+    return with_loops(strokes, Ink(strokes, 0.0), near_mm)
+
+
 def length(strokes: Sequence[FloatArray]) -> float:
     return sum(map(polyline_length, strokes))
 
 
 @given(many)
 def test_the_ink_stays_the_same_and_is_drawn_once(strokes: list[FloatArray]) -> None:
-    led = with_loops(strokes, NEAR_MM)
+    led = led_of(strokes, NEAR_MM)
     assert len(led) <= len(strokes)
     across_mm = 2.0 * NEAR_MM * (len(strokes) - len(led))  # to and fro
     assert length(strokes) - 1e-6 <= length(led) <= length(strokes) + across_mm + 1e-6
@@ -51,7 +56,7 @@ def test_the_ink_stays_the_same_and_is_drawn_once(strokes: list[FloatArray]) -> 
 
 @given(many)
 def test_no_closed_stroke_is_left_that_touches_another_line(strokes: list[FloatArray]) -> None:
-    led = with_loops(strokes, NEAR_MM)
+    led = led_of(strokes, NEAR_MM)
     shapes = [shapely.LineString(stroke) for stroke in led if len(stroke) > 1]
     closed = [is_closed(stroke) for stroke in led if len(stroke) > 1]
     for one, (shape, is_loop) in enumerate(zip(shapes, closed, strict=True)):
@@ -64,18 +69,18 @@ def test_open_strokes_keep_their_ends_and_taps_stay(strokes: list[FloatArray]) -
     def ends(some: Sequence[FloatArray]) -> list[list[list[float]]]:
         return sorted(stroke[[0, -1]].tolist() for stroke in some if not is_closed(stroke))
 
-    assert ends(with_loops(strokes, NEAR_MM)) == ends(strokes)
+    assert ends(led_of(strokes, NEAR_MM)) == ends(strokes)
 
 
 def test_a_chain_of_rings_and_a_line_is_one_stroke() -> None:
     strokes = [*(circle(2.0 * x, 0.0, 1.0) for x in range(40)), np.array([[-5.0, 0.0], [-1.05, 0.0]])]
-    (led,) = with_loops(strokes, NEAR_MM)
+    (led,) = led_of(strokes, NEAR_MM)
     assert polyline_length(led) == pytest.approx(length(strokes) + 0.1, abs=1e-6)
 
 
 def test_a_way_round_is_taken_in_the_direction_that_turns_less() -> None:
     for ring in (circle(0.0, 1.0, 1.0), circle(0.0, 1.0, 1.0)[::-1]):
-        (led,) = with_loops([np.array([[-3.0, 0.0], [3.0, 0.0]]), ring], NEAR_MM)
+        (led,) = led_of([np.array([[-3.0, 0.0], [3.0, 0.0]]), ring], NEAR_MM)
         heading = np.diff(led, axis=0)
         turn = np.sum(heading[1:] * heading[:-1], axis=1) / (
             np.linalg.norm(heading[1:], axis=1) * np.linalg.norm(heading[:-1], axis=1)
@@ -86,5 +91,13 @@ def test_a_way_round_is_taken_in_the_direction_that_turns_less() -> None:
 def test_a_ring_with_a_gap_is_one_where_its_ends_may_be_joined() -> None:
     ring, line = circle(0.0, 0.0, 2.0), np.array([[-4.0, 0.0], [4.0, 0.0]])
     ring[-1] += (0.0, -0.09)
-    assert len(with_loops([line, ring], NEAR_MM)) == 1
-    assert len(with_loops([line, ring], 0.05)) == 2
+    assert len(led_of([line, ring], NEAR_MM)) == 1
+    assert len(led_of([line, ring], 0.05)) == 2
+
+
+def test_a_gap_that_is_drawn_across_is_not_touched() -> None:
+    lines = [np.array([[-4.0, 0.0], [-0.1, 0.0]]), np.array([[0.1, 0.0], [4.0, 0.0]])]
+    ring, joined = circle(0.0, 1.05, 1.0), [np.concatenate(lines)]
+    assert len(with_loops([*joined, ring], Ink([*lines, ring], 0.0), 0.06)) == 2
+    assert len(with_loops([*joined, ring], Ink([*joined, ring], 0.0), 0.06)) == 1
+    assert len(with_loops([*joined, ring], Ink([*lines, ring], 0.2), 0.06)) == 1  # that narrow gaps are none

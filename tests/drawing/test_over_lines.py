@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planner.arrays import FloatArray
+from planner.drawing.ink import Ink
 from planner.drawing.join import is_closed
 from planner.drawing.over_lines import Leaps, join_over_lines
 from planner.polyline_length import polyline_length
@@ -28,6 +29,10 @@ def ink(strokes: Sequence[FloatArray]) -> shapely.Geometry:
     return shapely.union_all([shapely.LineString(stroke) for stroke in strokes if len(stroke) > 1])
 
 
+def over(strokes: list[FloatArray], leaps: Leaps) -> list[FloatArray]:
+    return join_over_lines(strokes, Ink(strokes, 0.0), leaps)
+
+
 def length(strokes: Sequence[FloatArray]) -> float:
     return sum(map(polyline_length, strokes))
 
@@ -38,7 +43,7 @@ def n_ends(strokes: Sequence[FloatArray]) -> int:
 
 @given(many, st.sampled_from([ANY, ALONG]))
 def test_no_line_is_lost_and_two_leaps_are_drawn_for_two_ends(strokes: list[FloatArray], leaps: Leaps) -> None:
-    joined = join_over_lines(strokes, leaps)
+    joined = over(strokes, leaps)
     n_joined = (n_ends(strokes) - n_ends(joined)) // 2
     assert len(joined) <= len(strokes)
     assert length(strokes) - 1e-9 <= length(joined) <= length(strokes) + 2 * LEAP_MM * n_joined + 1e-6
@@ -70,7 +75,7 @@ def test_two_ends_near_a_line_are_one_stroke_over_it_by_the_shortest_way(
             [far[1], ends[1]][:: 1 if turned_round[1] else -1],
         )
     ]
-    joined = join_over_lines(strokes, ANY)
+    joined = over(strokes, ANY)
     one, other = (stroke[-1] if turned else stroke[0] for stroke, turned in zip(strokes[1:], turned_round, strict=True))
     along_all = np.concatenate(
         [line[0] + np.linspace(0.0, 1.0, 20_001)[:, None] * (line[1] - line[0]) for line in strokes]
@@ -84,14 +89,14 @@ def test_two_ends_near_a_line_are_one_stroke_over_it_by_the_shortest_way(
 
 def test_an_end_that_meets_a_line_alone_stays_as_it_is() -> None:
     strokes = [np.array([[0.0, 0.0], [20.0, 0.0]]), np.array([[10.0, 0.1], [10.0, 5.0]])]
-    assert join_over_lines(strokes, ANY) == strokes
+    assert over(strokes, ANY) == strokes
 
 
 def test_the_ends_of_one_stroke_are_joined_over_another_line_alone() -> None:
     horseshoe = np.array([[9.9, 0.1], [9.0, 4.0], [11.0, 4.0], [10.1, 0.1]])
-    joined = join_over_lines([np.array([[0.0, 0.0], [20.0, 0.0]]), horseshoe], ANY)
+    joined = over([np.array([[0.0, 0.0], [20.0, 0.0]]), horseshoe], ANY)
     assert [is_closed(stroke) for stroke in joined] == [False, True]
-    (alone,) = join_over_lines([horseshoe], ANY)
+    (alone,) = over([horseshoe], ANY)
     np.testing.assert_array_equal(alone, horseshoe)
 
 
@@ -99,11 +104,19 @@ def test_unasked_only_ends_on_the_line_go_along_it() -> None:
     line, far = np.array([[0.0, 0.0], [20.0, 0.0]]), np.array([10.0, 5.0])
     for height, n_strokes in ((0.0, 2), (0.06, 3)):
         strokes = [line, np.array([(9.9, height), far]), np.array([(10.1, height), far + 5.0])]
-        assert len(join_over_lines(strokes, ALONG)) == n_strokes
+        assert len(over(strokes, ALONG)) == n_strokes
 
 
 def test_thousands_of_ends_about_a_place_are_no_quadratic_number_of_ways() -> None:
     angle = np.linspace(0.0, 2 * np.pi, 20_000, endpoint=False)
     spokes = np.stack((np.cos(angle), np.sin(angle)), axis=1)
     strokes = [np.stack((0.1 * spoke, 30.0 * spoke)) for spoke in spokes]
-    assert len(join_over_lines(strokes, ANY)) <= 20_000
+    assert len(over(strokes, ANY)) <= 20_000
+
+
+def test_no_way_leads_over_a_gap_that_is_drawn_across() -> None:
+    lines = [np.array([[0.0, 0.0], [9.9, 0.0]]), np.array([[10.1, 0.0], [20.0, 0.0]])]
+    both = [np.array([[10.0, 0.15], [10.0, 5.0]]), np.array([[10.0, -0.15], [10.0, -5.0]])]
+    joined = [np.concatenate(lines), *both]
+    assert len(join_over_lines(joined, Ink([*lines, *both], 0.05), Leaps(0.16, 0.16, 0.0))) == 3
+    assert len(join_over_lines(joined, Ink(joined, 0.05), Leaps(0.16, 0.16, 0.0))) == 2
