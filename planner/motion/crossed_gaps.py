@@ -17,8 +17,6 @@ from planner.motion.tolerance import JOIN_SHARE, NARROW_SHARE
 
 _FINE = np.arange(16) / 16
 """Fractions of the way between points of the tip's curve: a fast pen crosses a gap in less than a step."""
-_NEAR = 8.0
-"""How much of a stroke on both sides of a gap is looked at, in tolerances."""
 
 
 class Gaps:
@@ -53,7 +51,10 @@ def left_open(
     if not len(crossed):
         return [stroke]
     steps = _steps_of_tips(kinematics, samples)
-    open_ = [index for index in crossed.tolist() if _strays(stroke, index, steps, tolerance_mm)]
+    is_line = np.ones(len(stroke) - 1, dtype=np.bool_)
+    is_line[crossed] = False  # every time that it is crossed: another pass over a gap makes no line of it
+    pieces = np.stack((stroke[:-1], stroke[1:]), axis=1)[is_line]
+    open_ = [index for index in crossed.tolist() if _strays(stroke[index : index + 2], pieces, steps, tolerance_mm)]
     cuts = [index + 1 for index, before in zip(open_, [-1, *open_], strict=False) if index - before > 1]
     if cuts and len(stroke) - cuts[-1] < 2:
         cuts.pop()
@@ -72,34 +73,22 @@ def _steps_of_tips(kinematics: Kinematics, samples: FloatArray) -> FloatArray:
     return np.concatenate([np.stack((curve[:-1], curve[1:]), axis=1) for curve in curves])
 
 
-def _strays(stroke: FloatArray, index: int, steps: FloatArray, tolerance_mm: float) -> bool:
-    """Whether a tip about the gap after a point is off the stroke before and after it, and all the rest of it."""
-    one, other = stroke[index], stroke[index + 1]
-    reach_mm = 0.5 * np.hypot(*(other - one)) + tolerance_mm
+def _strays(gap: FloatArray, pieces: FloatArray, steps: FloatArray, tolerance_mm: float) -> bool:
+    """Whether a tip about a gap (2, 2) is off all straight pieces (n, 2, 2) of the stroke that crosses it."""
+    middle = gap.mean(axis=0)
+    reach_mm = 0.5 * np.hypot(*(gap[1] - gap[0])) + tolerance_mm
     lengths_mm = np.hypot(*(steps[:, 1] - steps[:, 0]).T)
-    about = steps[np.hypot(*(steps[:, 0] - 0.5 * (one + other)).T) <= reach_mm + lengths_mm]
+    about = steps[np.hypot(*(steps[:, 0] - middle).T) <= reach_mm + lengths_mm]
     across = (about[:, :1] + _FINE[:, None] * (about[:, 1:] - about[:, :1])).reshape(-1, 2)
-    sides = [_near_end(side, _NEAR * tolerance_mm) for side in (stroke[: index + 1][::-1], stroke[index + 1 :])]
-    across = across[np.min([_distance(across, side) for side in sides], axis=0) > tolerance_mm]
-    if not len(across):
-        return False
-    whole = [_distance(across, side) for side in (stroke[: index + 1], stroke[index + 1 :])]
-    return bool((np.min(whole, axis=0) > tolerance_mm).any())
+    across = across[np.hypot(*(across - middle).T) <= reach_mm]
+    near = pieces[_distance(middle[None], pieces)[0] <= reach_mm + tolerance_mm]
+    return bool((_distance(across, near) > tolerance_mm).all(axis=1).any())
 
 
-def _near_end(line: FloatArray, length_mm: float) -> FloatArray:
-    """The first so many mm of a line."""
-    arc = np.cumsum(np.hypot(*np.diff(line, axis=0).T))
-    return line[: int(np.searchsorted(arc, length_mm)) + 2]
-
-
-def _distance(points: FloatArray, line: FloatArray) -> FloatArray:
-    """(n,) from points (n, 2) to a polyline (m, 2)."""
-    start, along = line[:-1], np.diff(line, axis=0)
-    if not len(along):
-        alone: FloatArray = np.hypot(*(points - line[0]).T)
-        return alone
+def _distance(points: FloatArray, pieces: FloatArray) -> FloatArray:
+    """(n, m) from points (n, 2) to straight pieces (m, 2, 2)."""
+    start, along = pieces[:, 0], pieces[:, 1] - pieces[:, 0]
     offset = points[:, None] - start
     share = np.clip((offset * along).sum(axis=2) / np.maximum((along * along).sum(axis=1), 1e-18), 0.0, 1.0)
-    nearest: FloatArray = np.linalg.norm(offset - share[..., None] * along, axis=2).min(axis=1)
-    return nearest
+    distance: FloatArray = np.linalg.norm(offset - share[..., None] * along, axis=2)
+    return distance

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from planner.arrays import FloatArray
@@ -57,6 +57,15 @@ def test_what_is_joined_unasked_is_within_the_tolerance_of_the_drawing(
     made = drawn(tmp_path, chains(np.random.default_rng(seed), 12), rate_hz=rate_hz)
     assert made.trajectory.path_work.join_mm is None  # the check knows of no joins
     assert made.summary.n_strokes < 1.5 * 12
+
+
+@settings(deadline=None, max_examples=4, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(seed=st.integers(0, 10**6), passes=st.sampled_from([2, 3]), dedup_mm=st.sampled_from([0.0, 0.1]))
+@example(seed=156, passes=2, dedup_mm=0.0)
+def test_what_is_joined_and_drawn_again_is_within_the_tolerance_too(
+    tmp_path: Path, seed: int, passes: int, dedup_mm: float
+) -> None:
+    drawn(tmp_path, chains(np.random.default_rng(seed), 12), rate_hz=100.0, passes=passes, dedup_mm=dedup_mm)
 
 
 def test_lines_in_line_are_one_stroke_over_a_gap_of_nearly_twice_the_tolerance(tmp_path: Path) -> None:
