@@ -72,6 +72,7 @@ READ = {
     "/api/jobs/{id}/trajectory",
     "/api/calibration/sheet",
     "/api/calibration/reading",
+    "/static/film_reader.js",
 }
 
 
