@@ -36,7 +36,9 @@ async def _draws(folder: Path) -> None:
         }  # fmt: skip
         assert "so101" in text(await call(session, "arms"))
 
-        planned = json.loads(text(await call(session, "plan", svg=SQUARE.decode(), options={"rotate": 5})))
+        planned = json.loads(
+            text(await call(session, "plan", svg=SQUARE.decode(), options={"rotate": 5, "scale": 0.3}))
+        )
         assert "--rotate=5" in planned["command"] and planned["summary"]
         job = planned["job"]
         (picture,) = (await call(session, "picture", job=job)).content

@@ -19,14 +19,15 @@ def test_the_oldest_drawings_make_room_but_not_what_is_drawn(tmp_path: Path, mon
 
     async def add() -> None:
         house = House(tmp_path)
-        drawn, second = house.add("drawn.svg", SQUARE), house.add("second.svg", SQUARE)
-        house.arm.begin(
-            Playable(drawn.id, drawn.name, house.store.of(drawn), "none.csv", lambda how, complete: None), {}
-        )
-        later = [house.add(f"later{number}.svg", SQUARE) for number in range(3)]
-        assert [job.id for job in house.store] == [drawn.id, *(job.id for job in later[1:])]
-        assert house.store.of(drawn).exists() and not house.store.of(second).exists()
-        await house.close()
+        try:
+            drawn, second = house.add("drawn.svg", SQUARE), house.add("second.svg", SQUARE)
+            run = Playable(drawn.id, drawn.name, house.store.of(drawn), "none.csv", lambda how, complete: None)
+            house.arm.begin(run, {})
+            later = [house.add(f"later{number}.svg", SQUARE) for number in range(3)]
+            assert [job.id for job in house.store] == [drawn.id, *(job.id for job in later[1:])]
+            assert house.store.of(drawn).exists() and not house.store.of(second).exists()
+        finally:
+            await house.close()
 
     asyncio.run(add())
 

@@ -40,6 +40,8 @@ def test_what_is_found_becomes_an_arm_that_draws(server: Server, folder: Path) -
     assert do(server, "move", joint=name, number=-2)["joints"][1]["at"] == pytest.approx(here - 2, abs=1e-3)
     assert name in do(server, "move", number=500)["refused"]
     assert not do(server, "low")["saved"]
+    asked = {"command": "move", "number": 1, "joint": f"{name}\nsave"}
+    assert "no joint" in server.post("/api/jog/do", asked, status=400)["error"]
     assert "drawing" not in server.get("/api/state")["run"]["stand"]
     job = server.planned()
     assert "jogged" in server.post(f"/api/jobs/{job['id']}/run", status=400)["error"]
