@@ -485,8 +485,8 @@ def test_a_plan_loads_what_a_plan_needs(tmp_path: Path) -> None:
         f" code = main([{str(drawing)!r}, '-o', {str(tmp_path / 'box.csv')!r}, '--quiet']); "
         f"sys.exit(code or ','.join(m for m in {unneeded} if m in sys.modules) or 0)"
     )
-    assert main([str(drawing), "-o", str(tmp_path / "box.csv"), "--quiet"]) == 0  # the arm's maps are kept
-    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
+    for _ in range(2):  # the first keeps the arm's maps, for which more is needed
+        done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
     assert done.stderr == ""
     assert done.returncode == 0
 

@@ -58,7 +58,6 @@ def test_a_gap_is_hopped_over_where_it_is_too_wide_to_be_drawn_across() -> None:
 
 
 def test_toppra_s_followers_keep_all_limits_and_the_tolerance() -> None:
-    pytest.importorskip("toppra")
     from benchmarks.targets import toppra_ruckig, toppra_slowed
     from benchmarks.targets.toppra_profile import profile_of
 

@@ -19,13 +19,15 @@ class Ink:
     def __init__(self, strokes: Sequence[FloatArray], least_mm: float) -> None:
         self._least_mm = least_mm
         pieces = _pieces(strokes)
-        self._keys = np.unique(_keys(pieces[self._is_long(pieces)]))
+        self._keys = np.sort(_keys(pieces[self._is_long(pieces)]))
 
     def gaps_of(self, strokes: Sequence[FloatArray]) -> BoolArray:
         """(total pieces,) which of the pieces of strokes made of these are none of them, stroke after stroke."""
         pieces = _pieces(strokes)
         found = self._is_long(pieces)
-        found[found] = ~np.isin(_keys(pieces[found]), self._keys)
+        keys = _keys(pieces[found])
+        first, behind = (np.searchsorted(self._keys, keys, side) for side in ("left", "right"))
+        found[found] = first == behind
         return found
 
     def _is_long(self, pieces: FloatArray) -> BoolArray:
