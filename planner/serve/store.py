@@ -114,7 +114,7 @@ class Store:
         """Those of earlier servers; what cannot be read is passed over."""
         known = {field.name for field in fields(Job)}
         for folder in (self.folder / "jobs").iterdir():
-            with suppress(OSError, ValueError, TypeError, KeyError):
+            with suppress(OSError, ValueError, TypeError, KeyError, UsageError):
                 said = json.loads((folder / _JOB).read_text(encoding="utf-8"))
                 job = Job(**{key: value for key, value in said.items() if key in known})
                 if job.id != folder.name or not _ID.fullmatch(job.id) or job.name != safe_name(job.name):

@@ -173,7 +173,7 @@ def test_a_token_is_asked_for_where_others_can_reach_the_page(tmp_path: Path) ->
 
 
 def test_whoever_else_can_reach_the_page_needs_a_token(tmp_path: Path) -> None:
-    with Server(tmp_path, "--demo", "--host", "0.0.0.0") as server:  # noqa: S104
+    with Server(tmp_path, "--demo", "--host", "0.0.0.0") as server:
         token = server.address.partition("/?token=")[2]
         assert len(token) >= 32
         assert server.answer("GET", "/api/state")[0] == 401
