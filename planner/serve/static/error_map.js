@@ -1,6 +1,6 @@
 // The error of an arm over its paper, as a bitmap of coloured cells.
 
-import { brushOf, element } from "./dom.js";
+import { PaintedOnce } from "./painted_once.js";
 
 const [LEAST, MOST] = [[207, 227, 241], [213, 94, 0]]; // as in the legend
 const ALPHA = 0.7;
@@ -12,32 +12,22 @@ export class ErrorMap {
     /** From the least error to what all but the worst twentieth keep, mm. */
     this.range = known.length ? [known[0], known[Math.floor(0.95 * (known.length - 1))]] : null;
     [this.x, this.y, this.error] = [x, y, error];
+    this.cells = new PaintedOnce();
   }
 
   /** mm: the canvas, see placement.js; the context has a matrix from its sheet to pixels. */
   draw(context, mm) {
     if (!this.range) return;
-    const matrix = context.getTransform();
-    const { width, height } = context.canvas;
-    const key = [matrix.toString(), width, height].join(" ");
-    if (this.key !== key) {
-      this.key = key;
-      this.bitmap = element("canvas", "", { width, height });
-      const cells = brushOf(this.bitmap);
-      cells.setTransform(matrix);
-      cells.lineWidth = 1 / matrix.a; // over the seams
-      this.#paint(cells, mm);
-    }
     context.save();
-    context.resetTransform();
     context.globalAlpha = ALPHA;
-    context.drawImage(this.bitmap, 0, 0);
+    this.cells.draw(context, (cells) => this.#paint(cells, mm));
     context.restore();
   }
 
   #paint(context, mm) {
     const { x, y, error } = this;
     const [least, most] = this.range;
+    context.lineWidth = 1 / context.getTransform().a; // over the seams
     for (let i = 0; i + 1 < x.length; i++) {
       for (let j = 0; j + 1 < x[i].length; j++) {
         const known = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].filter(([k, l]) => error[k][l] !== null);

@@ -3,6 +3,7 @@
 import { brushOf } from "./dom.js";
 import { ErrorMap } from "./error_map.js";
 import { Ink, Reel } from "./ink.js";
+import { PaintedOnce } from "./painted_once.js";
 import { canvasOf, placed } from "./placement.js";
 
 const HANDLE = 9;
@@ -34,6 +35,7 @@ export class Sheet {
       this.arm = arm;
       this.map = arm?.map ? new ErrorMap(arm.map) : null;
       this.zone = arm?.canvas_mm ? zoneOf(arm, canvasOf(arm)) : null;
+      this.paintedZone = new PaintedOnce();
     }
     if (lines !== undefined && lines !== this.lines) {
       this.lines = lines;
@@ -73,8 +75,11 @@ export class Sheet {
     const { scale, x, y } = this.view;
     const px = 1 / scale;
     context.setTransform(scale, 0, 0, scale, x, y);
-    context.fillStyle = colour("--zone");
-    context.fill(this.zone);
+    const fill = colour("--zone");
+    this.paintedZone.draw(context, (brush) => {
+      brush.fillStyle = fill;
+      brush.fill(this.zone);
+    }, fill);
     const sheet = placement?.paper.sheet;
     context.fillStyle = colour("--paper");
     if (sheet) context.fillRect(sheet.left, sheet.top, sheet.width, sheet.height);
