@@ -485,8 +485,27 @@ def test_a_plan_loads_what_a_plan_needs(tmp_path: Path) -> None:
         f" code = main([{str(drawing)!r}, '-o', {str(tmp_path / 'box.csv')!r}, '--quiet']); "
         f"sys.exit(code or ','.join(m for m in {unneeded} if m in sys.modules) or 0)"
     )
-    for _ in range(2):  # the first keeps the arm's maps, for which more is needed
+    for _ in range(2):  # the first keeps the arm and its maps, for which more is needed
         done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True)
+    assert done.stderr == ""
+    assert done.returncode == 0
+
+
+def test_a_small_plan_looks_for_no_garbage_and_neither_does_its_end(tmp_path: Path) -> None:
+    drawing = tmp_path / "box.svg"
+    drawing.write_text('<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H40V20H0Z" stroke="red"/></svg>')
+    script = (
+        "import gc, sys; from planner.entry.command import main; looks = [];"
+        " gc.callbacks.append(lambda *look: looks.append(look)); main();"
+        " sys.exit(f'{len(looks)} times, {gc.get_freeze_count()}' if looks or not gc.get_freeze_count() else 0)"
+    )
+    for _ in range(2):
+        done = subprocess.run(
+            [sys.executable, "-c", script, str(drawing), "-o", str(tmp_path / "box.csv"), "--quiet"],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+        )
     assert done.stderr == ""
     assert done.returncode == 0
 
