@@ -68,7 +68,7 @@ def plan_all(jobs: Sequence[Job], settings: PlanSettings, workers: Workers) -> I
     """Plan and write all drawings, at most one a worker at a time; outcomes come in the order of the jobs. What is
     computed of the arm is computed once in each process. A cluster has to see the same files under the same names.
     Errors: PlannerError where there is no such arm."""
-    context = PlanContext.of(load_arm(settings.arm), settings)
+    context = PlanContext.of(load_arm(settings.arm, cache=settings.cache), settings)
     with executor_of(workers if len(jobs) > 1 else ALONE) as executor:
         yield from executor(partial(_planned, context), jobs)
 

@@ -1,4 +1,4 @@
-"""Arrays that took a while to compute, kept on disk for the next process.
+"""Arrays and texts that took a while to compute, kept on disk for the next process.
 
 A file holds the answer to one question. Its name is a digest of the question, of this package and of the libraries that
 answer it, so that no file is ever wrong: it is found, or it is not. Whoever deletes or damages files, or cannot write
@@ -16,6 +16,7 @@ from functools import cache
 from importlib.metadata import version
 from io import BytesIO
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -31,26 +32,37 @@ _MOST_FILES = 200
 _CHECKSUM_BYTES = 16
 
 Arrays = Mapping[str, FloatArray]
+Answer = TypeVar("Answer")
 
 
 def kept(question: str, answer: Callable[[], Arrays]) -> Arrays:
     """The arrays that `answer` gives, from disk where an earlier process has asked the same `question`, which has to
     name all that the answer depends on. Errors: those of `answer`; those of the disk are none."""
+    return _kept(question, answer, _packed, _unpacked)
+
+
+def kept_text(question: str, answer: Callable[[], str]) -> str:
+    """As `kept`, where the answer is a text."""
+    return _kept(question, answer, str.encode, bytes.decode)
+
+
+def _kept(
+    question: str, answer: Callable[[], Answer], packed: Callable[[Answer], bytes], unpacked: Callable[[bytes], Answer]
+) -> Answer:
     folder = kept_folder()
     if folder is None:
         return answer()
     file = folder / f"{_digest(question)}.kept"
     found = _read(file)
     if found is not None:
-        return found
+        return unpacked(found)
     answered = answer()
     with suppress(OSError, OutputError, ValueError):
         folder.mkdir(parents=True, exist_ok=True)
         _drop_oldest(folder)
-        packed = BytesIO()
-        np.savez(packed, **answered)  # type: ignore[arg-type]
+        content = packed(answered)
         with written_aside(file, binary=True) as stream:
-            stream.write(_checksum(packed.getvalue()) + packed.getvalue())  # type: ignore[arg-type]
+            stream.write(_checksum(content) + content)  # type: ignore[arg-type]
     return answered
 
 
@@ -73,7 +85,7 @@ def _digest(question: str) -> str:
 @cache
 def _answering() -> str:
     """What answers: the libraries, and this package as it lies on disk, edited or not."""
-    libraries = [f"{name} {version(name)}" for name in ("numpy", "casadi")]
+    libraries = [f"{name} {version(name)}" for name in ("numpy", "casadi", "pydantic")]
     root = Path(__file__).parent
     modules = [
         f"{folder} {entry.name} {entry.stat().st_size} {entry.stat().st_mtime_ns}"
@@ -84,14 +96,22 @@ def _answering() -> str:
     return "\n".join([sys.version, *libraries, *sorted(modules)])
 
 
-def _read(file: Path) -> Arrays | None:
+def _read(file: Path) -> bytes | None:
     try:
         content = file.read_bytes()
     except OSError:
         return None
     checksum, packed = content[:_CHECKSUM_BYTES], content[_CHECKSUM_BYTES:]
-    if checksum != _checksum(packed):  # damaged: it is computed anew, and replaced
-        return None
+    return packed if checksum == _checksum(packed) else None  # damaged: it is computed anew, and replaced
+
+
+def _packed(arrays: Arrays) -> bytes:
+    packed = BytesIO()
+    np.savez(packed, **arrays)  # type: ignore[arg-type]
+    return packed.getvalue()
+
+
+def _unpacked(packed: bytes) -> Arrays:
     with np.load(BytesIO(packed), allow_pickle=False) as arrays:
         return {name: arrays[name] for name in arrays.files}
 

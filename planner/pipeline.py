@@ -68,7 +68,9 @@ def plan(
     """Plan one drawing. The result is the same whoever does the work. arm: None for the one that the settings name.
     Errors: PlannerError, before any result exists."""
     report("reading", 0, 1)
-    return plan_with(PlanContext.of(arm or load_arm(settings.arm), settings), drawing_file, report, workers)
+    return plan_with(
+        PlanContext.of(arm or load_arm(settings.arm, cache=settings.cache), settings), drawing_file, report, workers
+    )
 
 
 def plan_with(

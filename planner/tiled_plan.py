@@ -97,7 +97,7 @@ def plan_tiles(
     """Plan each sheet of a drawing that is cut into as many as it needs. report: told of all sheets together. arm: None
     for the one that the settings name. Errors: PlannerError, before any result exists."""
     report("reading", 0, 1)
-    context = PlanContext.of(arm or load_arm(settings.arm), settings)
+    context = PlanContext.of(arm or load_arm(settings.arm, cache=settings.cache), settings)
     lift_mm(context.model.arm, settings)  # said before the work begins
     with executor_of(worth_hiring(workers, drawing_file), context.make_ready) as executor:
         drawing = read_drawing(drawing_file, partial(report, "reading"), options=settings.reading)

@@ -475,6 +475,7 @@ def test_a_plan_loads_what_a_plan_needs(tmp_path: Path) -> None:
         "multiprocessing",
         "numpy.f2py",
         "numpy.ma",
+        "pydantic",
         "rich",
         "scipy.linalg",
         "scipy.optimize",

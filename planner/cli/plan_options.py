@@ -129,7 +129,7 @@ def settings_of(options: argparse.Namespace) -> PlanSettings:
         from planner.arms.arm_file import load_arm
         from planner.arms.usual_settings import usual_rate_hz, usual_tolerance_mm
 
-        arm = load_arm(options.arm)
+        arm = load_arm(options.arm, cache=options.cache)
         rate_hz = usual_rate_hz(arm) if rate_hz is None else rate_hz
         tolerance_mm = usual_tolerance_mm(arm) if tolerance_mm is None else tolerance_mm
     return PlanSettings(
