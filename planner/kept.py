@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import cache
-from importlib.metadata import version
+from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
 from typing import TypeVar
@@ -85,7 +85,7 @@ def _digest(question: str) -> str:
 @cache
 def _answering() -> str:
     """What answers: the libraries, and this package as it lies on disk, edited or not."""
-    libraries = [f"{name} {version(name)}" for name in ("numpy", "casadi", "pydantic")]
+    libraries = [_version(name) for name in ("numpy", "casadi", "pydantic")]
     root = Path(__file__).parent
     modules = [
         f"{folder} {entry.name} {entry.stat().st_size} {entry.stat().st_mtime_ns}"
@@ -94,6 +94,19 @@ def _answering() -> str:
         if entry.name.endswith(".py")
     ]
     return "\n".join([sys.version, *libraries, *sorted(modules)])
+
+
+def _version(library: str) -> str:
+    """By the folder beside an installed library that is named after it and its version; `importlib.metadata`, which
+    would open that folder, loads a reader of e-mail for it, and is asked where there is none."""
+    spec = find_spec(library)
+    site = None if spec is None or spec.origin is None else Path(spec.origin).parent.parent
+    told = sorted(site.glob(f"{library}-*.dist-info")) if site is not None else []
+    if told:
+        return " ".join(folder.name for folder in told)
+    from importlib.metadata import version
+
+    return f"{library} {version(library)}"
 
 
 def _read(file: Path) -> bytes | None:

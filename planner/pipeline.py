@@ -17,7 +17,6 @@ from planner.arms.usual_settings import expected_error_mm, usual_tolerance_mm
 from planner.arrays import FloatArray
 from planner.as_servos_see import cut_corners_mm, samples_a_set_point
 from planner.assembly import assembled, verify
-from planner.best_place import best_place
 from planner.drawing.drawing import Drawing
 from planner.drawing.pen_groups import chosen_layers, pen_groups
 from planner.drawing.source import DrawingSource, SvgInMemory
@@ -114,6 +113,8 @@ def _placed(
         return taken(placed(drawing, canvas, settings), context, report)
     anywhere = placed(drawing, canvas, replace(settings, skip_unreachable=True))
     anywhere, drawings = taken(anywhere, context, report)
+    from planner.best_place import best_place  # few ask for it
+
     best = best_place(executor, context, inked_outlines(drawing), anywhere, drawings, report)
     place = replace(placed(drawing, canvas, settings, best.motion), won=best.told)
     return taken(place, context, report)

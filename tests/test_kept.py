@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,13 @@ def test_another_version_of_this_package_asks_anew(folder: Path, monkeypatch: py
     monkeypatch.setattr(module, "_answering", lambda: "another one")
     kept("which?", asked)
     assert asked.times == 2
+
+
+def test_libraries_are_told_by_their_versions_wherever_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("numpy", "casadi", "pydantic"):
+        assert version(name) in module._version(name)
+    monkeypatch.setattr(module, "find_spec", lambda name: None)  # no folder beside it
+    assert module._version("numpy") == f"numpy {version('numpy')}"
 
 
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -71,9 +71,10 @@ def _neighbours(free: IntArray, points: FloatArray, leap_mm: float) -> tuple[Int
     is_crowded = is_near.sum(axis=1) >= _CROWD
     is_near[is_crowded] = False
     rows, columns = np.nonzero(is_near[:, : _NEIGHBOURS + 1] & ~is_crowded[others[:, : _NEIGHBOURS + 1]])
-    pairs = np.sort(np.stack((free[rows], free[others[rows, columns]]), axis=1), axis=1)
-    pairs = np.unique(pairs[pairs[:, 0] != pairs[:, 1]], axis=0)
-    return pairs[:, 0], pairs[:, 1]
+    one, other = np.sort((free[rows], free[others[rows, columns]]), axis=0)
+    keys = np.sort((one * len(points) + other)[one != other])
+    one, other = np.divmod(keys[np.diff(keys, prepend=-1) > 0], len(points))  # np.unique loads masked arrays
+    return one, other
 
 
 def _ways(

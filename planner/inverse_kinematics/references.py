@@ -9,17 +9,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from planner.arrays import FloatArray, IntArray
-from planner.inverse_kinematics.closed_forms import ClosedForm, closed_form_of
-from planner.inverse_kinematics.dls import FOR_DRAWING, DlsSolver
-from planner.inverse_kinematics.nlp import NlpSolver
 from planner.redundancy.arm_model import ArmModel
 from planner.redundancy.configuration_map import ConfigurationMap, branch_references
 from planner.settings import ConfigurationWeights, Method
+
+if TYPE_CHECKING:
+    from planner.inverse_kinematics.closed_forms import ClosedForm
 
 _HOME = ConfigurationWeights(time=0.1, sensitivity=0.0, reversals=0.0, limits=1.0)
 """Sequential methods start from a home that is well inside the joint limits."""
@@ -46,16 +46,22 @@ class References(Protocol):
 
 
 def references_of(model: ArmModel, method: Method, weights: ConfigurationWeights | None = None) -> References:
-    """The method for an arm, with the arm's own weights where none are given. Errors: PlannerError where the arm has no
-    such method."""
+    """The method for an arm, with the arm's own weights where none are given; no other one is loaded. Errors:
+    PlannerError where the arm has no such method."""
     if method is Method.PATH:
         return _FromMap(model.branches(weights))
     if method is Method.CLOSED_FORM:
+        from planner.inverse_kinematics.closed_forms import closed_form_of
+
         return _FromClosedForm(closed_form_of(model.arm))
     home, branches = home_of(model), partial(model.branches, weights)
     if method is Method.NLP:
+        from planner.inverse_kinematics.nlp import NlpSolver
+
         nlp = NlpSolver(model.kinematics)
         return _InSequence(lambda tips_mm: nlp.solve_sequence(tips_mm, home).configurations, len(home), branches)
+    from planner.inverse_kinematics.dls import FOR_DRAWING, DlsSolver
+
     dls, start = DlsSolver(model.kinematics), model.arm.complete(home)
     return _InSequence(
         lambda tips_mm: dls.solve_sequence(tips_mm, start, FOR_DRAWING).configurations, len(home), branches
