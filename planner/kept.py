@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache
 from importlib.util import find_spec
@@ -86,24 +86,28 @@ def _digest(question: str) -> str:
 def _answering() -> str:
     """What answers: the libraries, and this package as it lies on disk, edited or not."""
     libraries = [_version(name) for name in ("numpy", "casadi", "pydantic")]
-    root = Path(__file__).parent
-    modules = [
-        f"{folder} {entry.name} {entry.stat().st_size} {entry.stat().st_mtime_ns}"
-        for folder, _, _ in os.walk(root)
-        for entry in os.scandir(folder)
-        if entry.name.endswith(".py")
-    ]
-    return "\n".join([sys.version, *libraries, *sorted(modules)])
+    return "\n".join([sys.version, *libraries, *sorted(_modules(str(Path(__file__).parent)))])
+
+
+def _modules(folder: str) -> Iterator[str]:
+    """Each module within, as it lies there."""
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.name.endswith(".py"):
+                state = entry.stat()
+                yield f"{entry.path} {state.st_size} {state.st_mtime_ns}"
+            elif entry.is_dir(follow_symlinks=False) and entry.name != "__pycache__":
+                yield from _modules(entry.path)
 
 
 def _version(library: str) -> str:
     """By the folder beside an installed library that is named after it and its version; `importlib.metadata`, which
     would open that folder, loads a reader of e-mail for it, and is asked where there is none."""
     spec = find_spec(library)
-    site = None if spec is None or spec.origin is None else Path(spec.origin).parent.parent
-    told = sorted(site.glob(f"{library}-*.dist-info")) if site is not None else []
+    beside = [] if spec is None or spec.origin is None else list(os.scandir(Path(spec.origin).parent.parent))
+    told = [one.name for one in beside if one.name.startswith(f"{library}-") and one.name.endswith(".dist-info")]
     if told:
-        return " ".join(folder.name for folder in told)
+        return " ".join(sorted(told))
     from importlib.metadata import version
 
     return f"{library} {version(library)}"

@@ -61,6 +61,17 @@ def test_another_version_of_this_package_asks_anew(folder: Path, monkeypatch: py
     assert asked.times == 2
 
 
+def test_each_module_of_this_package_answers_as_it_lies_on_disk(tmp_path: Path) -> None:
+    root = Path(module.__file__).parent
+    told = list(module._modules(str(root)))
+    assert sorted(line.rsplit(" ", 2)[0] for line in told) == sorted(map(str, root.rglob("*.py")))
+    (tmp_path / "within").mkdir()
+    (tmp_path / "within" / "one.py").write_text("old")
+    before = list(module._modules(str(tmp_path)))
+    (tmp_path / "within" / "one.py").write_text("newer")
+    assert len(before) == 1 and list(module._modules(str(tmp_path))) != before
+
+
 def test_libraries_are_told_by_their_versions_wherever_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("numpy", "casadi", "pydantic"):
         assert version(name) in module._version(name)
