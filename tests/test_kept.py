@@ -13,9 +13,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+import planner
 from planner import kept as module
 from planner.cli import main
 from planner.kept import FOLDER_VARIABLE, OFF, Arrays, kept
+from tests.drawn_shapes import lines_svg
 
 DRAWING = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 60" width="60mm" height="60mm">'
@@ -130,6 +132,16 @@ def test_plans_are_the_same_with_and_without_what_is_kept(
         assert folder.exists() is (name != "none.csv")
     written = {Path(name).read_bytes() for name in ("none.csv", "first.csv", "second.csv")}
     assert len(written) == 1
+
+
+def test_what_is_to_keep_nothing_keeps_nothing(folder: Path, tmp_path: Path) -> None:
+    drawing = tmp_path / "d.svg"
+    drawing.write_text(lines_svg('<path d="M20 30h9"/>', 'viewBox="0 0 60 60"'))
+    planner.plan(drawing, cache=False)
+    assert not folder.exists()
+    report = ["--report", str(tmp_path / "report")]
+    assert main([str(drawing), "-o", str(tmp_path / "d.csv"), "--quiet", "--no-cache", *report]) == 0
+    assert not folder.exists()
 
 
 def test_the_second_plan_of_an_arm_computes_no_map(folder: Path, tmp_path: Path) -> None:

@@ -42,8 +42,8 @@ def drawing_source(drawing: DrawingInput) -> DrawingSource:
     )
 
 
-def arm_of(arm: Arm | str | os.PathLike[str]) -> Arm:
-    """The arm itself, the one of that name, or the one of that `.toml` file.
+def arm_of(arm: Arm | str | os.PathLike[str], *, cache: bool = True) -> Arm:
+    """The arm itself, the one of that name, or the one of that `.toml` file. cache: as for `planner.arms.arm_file`.
 
     Errors: UnknownArm, ArmFileError (which lists every fault in the file), UsageError.
     """
@@ -52,7 +52,7 @@ def arm_of(arm: Arm | str | os.PathLike[str]) -> Arm:
 
     if isinstance(arm, Arm):
         return arm
-    return load_arm(arm_name(arm))
+    return load_arm(arm_name(arm), cache=cache)
 
 
 def arm_name(arm: Arm | str | os.PathLike[str]) -> str:

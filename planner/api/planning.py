@@ -56,7 +56,7 @@ def plan(
     wanted = settings_with(settings, None if arm is None else arm_name(arm), options)
     helpers = Workers(int(number_in("workers", workers, minimum=1, maximum=_MOST_WORKERS)))
     source = drawing_source(drawing)
-    loaded = arm_of(wanted.arm if arm is None else arm)
+    loaded = arm_of(wanted.arm if arm is None else arm, cache=wanted.cache)
     if settings is None:
         rate_hz, tolerance_mm = usual_rate_hz(loaded), usual_tolerance_mm(loaded)
         wanted = replace(

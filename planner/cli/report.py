@@ -49,7 +49,7 @@ def write_report_of(
     from planner.report.report import Planned, write_report
     from planner.workspace.reach import paper_in_reach
 
-    model = ArmModel(load_arm(settings.arm))
+    model = ArmModel(load_arm(settings.arm, cache=settings.cache), cache=settings.cache)
     check_result = check_trajectory(planned.trajectory, model.arm, planned.drawing, settings.tolerance_mm)
     report(_CHECKED, 100)
     expected, accuracy = _expected(model.arm, planned.trajectory)
