@@ -483,6 +483,7 @@ def test_a_plan_loads_what_a_plan_needs(tmp_path: Path) -> None:
         "planner.inverse_kinematics.closed_forms",
         "planner.inverse_kinematics.dls",
         "planner.inverse_kinematics.nlp",
+        "planner.redundancy.plane_map",
         "pydantic",
         "rich",
         "scipy",

@@ -148,7 +148,8 @@ def test_the_second_plan_of_an_arm_computes_no_map(folder: Path, tmp_path: Path)
     (tmp_path / "d.svg").write_text(DRAWING)
     script = (
         "import sys; from planner.redundancy import arm_model; from planner.cli import main\n"
-        "if sys.argv[1] == 'second': arm_model.configuration_branches = None\n"
+        "assert arm_model.ring_branches\n"
+        "if sys.argv[1] == 'second': arm_model.ring_branches = None\n"
         "sys.exit(main(['d.svg', '-o', sys.argv[1] + '.csv', '--quiet']))"
     )
     for name in ("first", "second"):

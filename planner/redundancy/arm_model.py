@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,9 +15,11 @@ from planner.kinematics.chain import Kinematics
 from planner.kinematics.limits import Limits
 from planner.kinematics.link_clearance import LinkClearance
 from planner.redundancy.configuration_map import ConfigurationMap
-from planner.redundancy.plane_map import PlaneMap, plane_branches
 from planner.redundancy.ring_map import RingMap, levelled, ray_of, ring_branches
 from planner.settings import ConfigurationWeights
+
+if TYPE_CHECKING:
+    from planner.redundancy.plane_map import PlaneMap
 
 
 class ArmModel:
@@ -74,6 +77,8 @@ class ArmModel:
             return ()
         weights = weights or self.arm.weights
         if weights not in self._plane_maps:
+            from planner.redundancy.plane_map import PlaneMap, plane_branches  # most arms turn over their paper
+
             arrays = self._maps(weights, lambda: plane_branches(self.kinematics, weights))
             self._plane_maps[weights] = tuple(PlaneMap.of(self.kinematics, of_one) for of_one in arrays)
         return self._plane_maps[weights]
