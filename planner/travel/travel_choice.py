@@ -51,6 +51,10 @@ class Slopes:
     def subset(self, moves: IntArray) -> Slopes:
         return Slopes(self.lifting[moves], self.lowering[moves], self.along[moves])
 
+    def steeper(self, height: FloatArray, way: FloatArray) -> Slopes:
+        """By so many times, (n_travel_moves,), on the way up and down, and along the way."""
+        return Slopes(height[:, None] * self.lifting, height[:, None] * self.lowering, way[:, None] * self.along)
+
 
 def coordinate_limits(slope: FloatArray, limits: Limits) -> Limits:
     """Limits (...,) of a coordinate to which all joints move in proportion: `dq = slope * dx`, slope
@@ -92,9 +96,15 @@ class Candidates:
 
 
 def quickest_candidates(
-    slopes: Slopes, limits: Limits, clearance_mm: float, lift_mm: float, lowering_mm_s: float
+    slopes: Slopes,
+    limits: Limits,
+    clearance_mm: float,
+    lift_mm: float,
+    lowering_mm_s: float,
+    least_mm: FloatArray | float = 0.0,
 ) -> Candidates:
     """The quickest ways to make each travel move, one for each of some handovers and shares, the quickest first.
+    least_mm: (n_travel_moves,) handovers that are lower are left out.
 
     The heights, and the speeds below the cap at which the pen may come down, are the same whatever the clearance and
     the cap, which only say where the lists end: what a stricter rule allows is tried under a laxer one, too.
@@ -118,6 +128,8 @@ def quickest_candidates(
         np.concatenate([none, *(getattr(candidates, field.name) for candidates in made)], axis=1)
         for field in fields(Candidates)
     ]
+    heights_mm = columns[[field.name for field in fields(Candidates)].index("handover_mm")]
+    columns[-1] = np.where(least_mm * (1 - 1e-9) > heights_mm.T, np.inf, columns[-1].T).T
     order = np.argsort(columns[-1], axis=1, kind="stable")
     return Candidates(*(np.take_along_axis(column, order, axis=1) for column in columns))
 
@@ -126,7 +138,8 @@ def _quickest_from(
     slopes: Slopes, limits: Limits, handover_mm: float, lift_mm: float, speeds_mm_s: FloatArray
 ) -> Candidates:
     """The quickest travel move for each share that hands over at that height. The fall passes it at any speed up to the
-    first one: what the rise has in excess of the height that leads up to that is come down at this first one."""
+    first one. One braking takes the rise to the fall: the rise is the one that this leads back to the handover, or a
+    higher one, from which it leads above that and the pen comes down the rest at this first speed."""
     rises, falls = np.linspace(*_AIMS, _N_RISES) * handover_mm, np.linspace(*_AIMS, _N_FALLS) * handover_mm
     up_jerk, down_jerk = (coordinate_limits(slope, limits).jerk[:, None] for slope in (slopes.lifting, slopes.lowering))
     below_up_s, up_speed, up_acceleration = _rise(rises, handover_mm, up_jerk, np.inf)
@@ -135,29 +148,36 @@ def _quickest_from(
         for column in zip(*(_rise(falls, handover_mm, down_jerk, speed) for speed in speeds_mm_s.tolist()), strict=True)
     )
     n_travel_moves, cap = len(up_jerk), speeds_mm_s[0]
-    seconds, at = np.empty((n_travel_moves, len(_SHARES))), np.empty((n_travel_moves, len(_SHARES)), dtype=np.int64)
+    shape = n_travel_moves, len(_SHARES)
+    seconds, at, rise_mm = np.empty(shape), np.empty(shape, dtype=np.int64), np.empty(shape)
+    cruises = down_acceleration[:, None] > -_NEVER_STEEP
     for column, share in enumerate(_SHARES.tolist()):
         over_s = rest_to_rest_s(
             coordinate_limits(slopes.along, rest_of(slopes, limits, np.full(n_travel_moves, share)))
         )
-        up_s, up_mm = _brake(up_speed, up_acceleration, share * up_jerk)
-        down_s, down_mm = _brake(down_speed, down_acceleration, share * down_jerk)
-        excess_mm = up_mm[:, :, None] - down_mm[:, None]
-        above_s = up_s[:, :, None] + down_s[:, None] + excess_mm / cap
-        whole_s = below_up_s[:, :, None] + below_down_s[:, None] + np.maximum(over_s[:, None, None], above_s)
-        whole_s[(excess_mm < 0.0) | (handover_mm + up_mm[:, :, None] > lift_mm)] = np.inf
+        jerk = share * np.minimum(up_jerk, down_jerk)
+        turn_s, excess_mm = _turn((up_speed, up_acceleration), (down_speed, down_acceleration), jerk)
+        turn_s += np.where(cruises, excess_mm / cap, 0.0)
+        whole_s = below_up_s[:, :, None] + below_down_s[:, None] + np.maximum(over_s[:, None, None], turn_s)
+        _, up_mm = _brake(up_speed, up_acceleration, jerk)
+        whole_s[handover_mm + up_mm > lift_mm] = np.inf
         # Braking that so little jerk cannot end before the pen falls faster than it may.
-        whole_s[up_speed - up_acceleration**2 / (2 * share * up_jerk) < -cap] = np.inf
-        at[:, column] = whole_s.reshape(n_travel_moves, -1).argmin(axis=1)
-        seconds[:, column] = np.take_along_axis(
-            whole_s.reshape(n_travel_moves, -1), at[:, column : column + 1], axis=1
-        )[:, 0]
-    rise, fall = np.divmod(at, down_speed.shape[1])
-    speed, aim = np.divmod(fall, len(falls))
+        whole_s[up_speed - up_acceleration**2 / (2 * jerk) < -cap] = np.inf
+        met_s, met_mm = _where_met(whole_s, excess_mm, rises)
+        whole_s[~(cruises & (excess_mm >= 0.0))] = np.inf
+        best = whole_s.argmin(axis=1)[:, None]
+        least_s = np.take_along_axis(whole_s, best, axis=1)[:, 0]
+        from_mm = np.where(least_s < met_s, rises[best[:, 0]], met_mm)
+        least_s = np.minimum(least_s, met_s)
+        fall = least_s.argmin(axis=1)[:, None]
+        at[:, column : column + 1] = fall
+        seconds[:, column : column + 1] = np.take_along_axis(least_s, fall, axis=1)
+        rise_mm[:, column : column + 1] = np.take_along_axis(from_mm, fall, axis=1)
+    speed, aim = np.divmod(at, len(falls))
     return Candidates(
         np.broadcast_to(_SHARES, at.shape),
         np.full(at.shape, handover_mm),
-        rises[rise],
+        rise_mm,
         falls[aim],
         speeds_mm_s[speed],
         np.full(at.shape, cap),
@@ -203,6 +223,40 @@ def _brake(velocity: FloatArray, acceleration: FloatArray, jerk: FloatArray) -> 
     """Time and height until a velocity is braked to nothing, from an acceleration that is not positive."""
     time = (acceleration + np.sqrt(acceleration**2 + 2 * jerk * velocity)) / jerk
     return time, time * (velocity + time * (acceleration / 2 - jerk * time / 6))
+
+
+def _turn(
+    up: tuple[FloatArray, FloatArray], down: tuple[FloatArray, FloatArray], jerk: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Time in which one braking that first grows and then fades takes a rise (n, n_rises) to a fall (n, n_falls), both
+    as speeds and accelerations, and how much higher that ends than it began, (n, n_rises, n_falls); NaN where there is
+    no such braking."""
+    rise, rise_push, fall, fall_push = up[0][:, :, None], up[1][:, :, None], down[0][:, None], down[1][:, None]
+    jerk = jerk[:, :, None]
+    change = (rise_push - fall_push) / jerk  # by so much it grows for longer than it fades
+    with np.errstate(invalid="ignore"):
+        root = np.sqrt(fall_push**2 + jerk * (rise + fall + change * (rise_push - jerk * change / 2)))
+    fades_s = (fall_push + root) / jerk
+    grows_s = fades_s + change
+    fades_s = np.where((fades_s >= 0.0) & (grows_s >= 0.0), fades_s, np.nan)
+    ascent = grows_s * (rise + grows_s * (rise_push / 2 - grows_s * jerk / 6))
+    descent = fades_s * (fall + fades_s * (fall_push / 2 - fades_s * jerk / 6))
+    return grows_s + fades_s, ascent - descent
+
+
+def _where_met(whole_s: FloatArray, excess_mm: FloatArray, rises: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Duration and height aimed at (n, n_falls) of the rise between the tried ones (n_rises,) that ends just as high as
+    it began; inf where it would have to be beyond them."""
+    is_enough = excess_mm >= 0.0
+    behind = np.maximum(is_enough.argmax(axis=1), 1)[:, None]
+    low, high = (np.take_along_axis(excess_mm, behind - k, axis=1)[:, 0] for k in (1, 0))
+    low_s, high_s = (np.take_along_axis(whole_s, behind - k, axis=1)[:, 0] for k in (1, 0))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share = low / (low - high)
+        met_s = low_s + share * (high_s - low_s)
+    is_met = (share >= 0.0) & (share <= 1.0) & np.isfinite(met_s)
+    met_mm = rises[behind[:, 0] - 1] + np.where(is_met, share, 0.0) * (rises[1] - rises[0])
+    return np.where(is_met, met_s, np.inf), met_mm
 
 
 def turning_acceleration(top_mm: FloatArray, jerk: FloatArray, speed: float) -> FloatArray:

@@ -57,6 +57,17 @@ _TO_THE_MIDDLE = (0.25, 0.5, 1.0, 2.0)
 other, where they otherwise leave them."""
 _LOW_LIFT = 0.5
 """Share of the lift height that is tried, never below the clearance, where nothing keeps within the joints' ranges."""
+_LITTLE = 1.02
+"""What a travel move may be slowed by without a look for another."""
+_TEMPERED = tuple(
+    (
+        *((share, share, 1.0), (share, 1.0, 1.0), (1.0, share, 1.0)),
+        *((1.0, 1.0, 1 / share), (share, 1.0, 1 / share), (1.0, share, 1 / share)),
+    )
+    for share in (0.7, 0.5, 0.35, 0.25, 0.18)
+)
+"""Such a travel move is tried with so much of the limits for its height, and for its way, and a handover so many times
+as high as it has to be: one group after the other, as long as that helps."""
 _SAMPLES_AT_ONCE = 100_000
 _TOO_SLOW = "choose a higher --lowering-speed, a lower --rate or --lift, or raise the limits of the arm's joints"
 _TURN_MARGIN = 0.999
@@ -133,22 +144,58 @@ def require_bounded_travel_moves(moves: Sequence[TravelMove], rules: TravelRules
 
 
 def _along(kinematics: Kinematics, limits: Limits, rules: TravelRules, shapes: Sequence[_Shape]) -> list[TravelMove]:
-    """Travel moves of these shapes, as quick as they may be."""
+    """Travel moves of these shapes, as quick as they may be.
+
+    One that has to be slowed, as between samples the tip would leave its way or joints their limits, may be quicker
+    where only its height, or only the way, has less of the limits: what stricter limits allow is a candidate so.
+    """
     if not shapes:
         return []
-    plans = _timed(shapes, _joint_slopes(kinematics, shapes), limits, rules)
+    slopes = _joint_slopes(kinematics, shapes)
+    plans = _timed(shapes, slopes, limits, rules)
+    moves = _made(kinematics, limits, rules, plans, np.full(len(plans), np.inf))
+    slow = np.flatnonzero([_is_slowed(plan, move, rules) for plan, move in zip(plans, moves, strict=True)])
+    for tempers in _TEMPERED:
+        if not len(slow):
+            break
+        one, (height, way, handover) = np.repeat(slow, len(tempers)), np.tile(np.array(tempers).T, len(slow))
+        tempered = slopes.subset(one).steeper(1 / height, 1 / way)
+        sooner_s = np.array([len(moves[index].joints) - 2 for index in one.tolist()]) / rules.rate_hz
+        tried = _timed([shapes[index] for index in one.tolist()], tempered, limits, rules, handover, sooner_s)
+        quick = [k for k, plan in enumerate(tried) if plan.natural_s <= sooner_s[k]]
+        made = _made(kinematics, limits, rules, [tried[k] for k in quick], sooner_s[quick])
+        for index, move in zip(one[quick].tolist(), made, strict=True):
+            moves[index] = min(moves[index], move, key=lambda one: (not one.exact, not one.held, len(one.joints)))
+        slow = np.unique(one[quick])
+    return moves
+
+
+def _is_slowed(plan: _Timed, move: TravelMove, rules: TravelRules) -> bool:
+    """Whether a travel move takes more samples than its plan does, slowed by a little."""
+    return not move.too_long_s and len(move.joints) - 1 > np.ceil(_LITTLE * plan.natural_s * rules.rate_hz)
+
+
+def _made(
+    kinematics: Kinematics, limits: Limits, rules: TravelRules, plans: Sequence[_Timed], most_s: FloatArray
+) -> list[TravelMove]:
+    """Travel moves as planned, slowed by what the limits and the tip's way ask for; as `_held`."""
+    if not plans:
+        return []
     plans = [plan.lasting(plan.duration_s, rules) for plan in plans]
     fine, _ = _sampled(kinematics, plans, _FINE * rules.rate_hz)
     plans = [
         plan.slowed(limits.slowing_of(joints, 1 / (_FINE * rules.rate_hz)) * 1.0005, rules)
         for plan, joints in zip(plans, fine, strict=True)
     ]
-    return _held(kinematics, limits, plans, rules)
+    return _held(kinematics, limits, plans, rules, most_s)
 
 
-def _held(kinematics: Kinematics, limits: Limits, plans: Sequence[_Timed], rules: TravelRules) -> list[TravelMove]:
+def _held(
+    kinematics: Kinematics, limits: Limits, plans: Sequence[_Timed], rules: TravelRules, most_s: FloatArray
+) -> list[TravelMove]:
     """The travel moves, each as slow as it has to be for the tip to keep to its way between samples. One that slowing
-    does not help, as where configurations jump to another branch, stays as quick as it was before."""
+    does not help, as where configurations jump to another branch, stays as quick as it was before, and so does one that
+    would last for longer than `most_s` (n_travel_moves,)."""
     moves: dict[int, TravelMove] = {}
     left, before = np.arange(len(plans)), np.full(len(plans), np.inf)
     while len(left):
@@ -171,10 +218,12 @@ def _held(kinematics: Kinematics, limits: Limits, plans: Sequence[_Timed], rules
             if kept
         )
         over = np.flatnonzero(helped & steady & (excess > 1.0))
-        plans = [
+        slower = [
             plans[index].slowed(plans[index].factor * min(np.sqrt(excess[index]), _SLOWER) / _MARGIN, rules)
             for index in over.tolist()
         ]
+        short = [k for k, plan in enumerate(slower) if plan.duration_s <= most_s[left[over[k]]] * (1 + 1e-9)]
+        plans, over = [slower[k] for k in short], over[short]
         left, before = left[over], excess[over]
     return [moves[index] for index in range(len(moves))]
 
@@ -332,22 +381,33 @@ def _joint_slopes(kinematics: Kinematics, shapes: Sequence[_Shape]) -> Slopes:
     )
 
 
-def _timed(shapes: Sequence[_Shape], slopes: Slopes, limits: Limits, rules: TravelRules) -> list[_Timed]:
-    """The quickest motions of every travel move, within the limits as far as joints follow their slopes."""
+def _timed(
+    shapes: Sequence[_Shape],
+    slopes: Slopes,
+    limits: Limits,
+    rules: TravelRules,
+    handover: FloatArray | float = 1.0,
+    most_s: FloatArray | float = np.inf,
+) -> list[_Timed]:
+    """The quickest motions of every travel move, within the limits as far as joints follow their slopes. They hand over
+    at that many (n_travel_moves,) clearances at least; what formulas find no quicker than `most_s` is not looked at."""
     up, down = (_rows(coordinate_limits(slope, limits)) for slope in (slopes.lifting, slopes.lowering))
     heights = [
         _Heights(of_up, (min(of_down[0], rules.lowering_speed_mm_s), *of_down[1:]))
         for of_up, of_down in zip(up, down, strict=True)
     ]
     rest = _ways(shapes, slopes, limits, np.full(len(shapes), RESTING_SHARE))
+    least_mm = np.minimum(handover * np.full(len(shapes), rules.clearance_mm), rules.lift_mm)
     best = [
-        min((_resting_move(*each, rules), *_hops_on_the_spot(*each, rules)), key=lambda candidate: candidate.natural_s)
-        for each in zip(shapes, rest, heights, strict=True)
+        min((_resting_move(*each, rules, mm), *_hops_on_the_spot(*each, rules)), key=lambda made: made.natural_s)
+        for *each, mm in zip(shapes, rest, heights, least_mm.tolist(), strict=True)
     ]
-    candidates = quickest_candidates(slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s)
+    candidates = quickest_candidates(
+        slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s, least_mm
+    )
     can_turn = np.array([shape.contacts == (True, True) for shape in shapes])
     for column in range(min(_TRIED, candidates.seconds.shape[1])):
-        so_far_s = np.array([candidate.natural_s for candidate in best])
+        so_far_s = np.minimum([candidate.natural_s for candidate in best], most_s)
         moves = np.flatnonzero(can_turn & (candidates.seconds[:, column] < so_far_s))
         if not len(moves):  # what comes later takes longer still
             break
@@ -460,14 +520,16 @@ def _rise(top_mm: float, bounds: _Bounds) -> RestToRest:
     return rest_to_rest(top_mm, *bounds, _TURN_MARGIN * min(turning, acceleration))
 
 
-def _resting_move(shape: _Shape, over: RestToRest, heights: _Heights, rules: TravelRules) -> _Timed:
-    """The travel move that is at rest at the lift height."""
+def _resting_move(
+    shape: _Shape, over: RestToRest, heights: _Heights, rules: TravelRules, handover_mm: float
+) -> _Timed:
+    """The travel move that is at rest at the lift height, and goes over the paper from that handover on."""
     up, down = (
         rest_to_rest(rules.lift_mm - foot, bounds[0], RESTING_SHARE * bounds[1], RESTING_SHARE * bounds[2])
         for foot, bounds in ((shape.from_mm, heights.up), (shape.to_mm, heights.down))
     )
     clear = [
-        rise.time_at(rules.clearance_mm) if rules.lift_mm > rules.clearance_mm > foot else rise.duration_s
+        rise.time_at(handover_mm) if rules.lift_mm > handover_mm > foot else rise.duration_s
         for rise, foot in ((up, shape.from_mm), (down, shape.to_mm))
     ]
     natural = max(up.duration_s + down.duration_s, clear[0] + over.duration_s + clear[1])
