@@ -13,7 +13,7 @@ from planner.account import account_of
 from planner.affine import scale_of
 from planner.arms.arm import Arm
 from planner.arms.arm_file import load_arm
-from planner.arms.usual_settings import expected_error_mm, usual_tolerance_mm
+from planner.arms.usual_settings import expected_error_mm, usual_clearance_mm, usual_tolerance_mm
 from planner.arrays import FloatArray
 from planner.as_servos_see import cut_corners_mm, samples_a_set_point
 from planner.assembly import assembled, verify
@@ -275,9 +275,14 @@ def _summary(trajectory: Trajectory, model: ArmModel, drawings: Sequence[PenDraw
 
 
 def _remarks(trajectory: Trajectory, arm: Arm, tip_mm: FloatArray, tolerance_mm: float) -> Iterator[str]:
-    """On the tolerance of a calibrated arm, and on what its servos see of the samples."""
+    """On the tolerance and the clearance of a calibrated arm, and on what its servos see of the samples."""
     if (error_mm := expected_error_mm(arm)) and tolerance_mm == usual_tolerance_mm(arm):
         yield f"tolerance {tolerance_mm:g} mm, by what this arm is expected to be off by: {error_mm:.2g} mm"
+    if arm.accuracy is not None and arm.pen.clearance_mm == usual_clearance_mm(arm):
+        yield (
+            f"the pen is clear of the paper at {arm.pen.clearance_mm:g} mm, by what this arm's height is expected to be"
+            f" off by: {arm.accuracy.height_mm:.2g} mm"
+        )
     every = samples_a_set_point(trajectory.rate_hz, arm.set_point_period_s)
     cut_mm, _ = cut_corners_mm(tip_mm, trajectory.pen, every)
     if cut_mm > tolerance_mm:

@@ -160,7 +160,7 @@ def _along(kinematics: Kinematics, limits: Limits, rules: TravelRules, shapes: S
             break
         one, (height, way, handover) = np.repeat(slow, len(tempers)), np.tile(np.array(tempers).T, len(slow))
         tempered = slopes.subset(one).steeper(1 / height, 1 / way)
-        sooner_s = np.array([len(moves[index].joints) - 2 for index in one.tolist()]) / rules.rate_hz
+        sooner_s = np.array([_sooner_s(moves[index], rules) for index in one.tolist()])
         tried = _timed([shapes[index] for index in one.tolist()], tempered, limits, rules, handover, sooner_s)
         quick = [k for k, plan in enumerate(tried) if plan.natural_s <= sooner_s[k]]
         made = _made(kinematics, limits, rules, [tried[k] for k in quick], sooner_s[quick])
@@ -171,8 +171,14 @@ def _along(kinematics: Kinematics, limits: Limits, rules: TravelRules, shapes: S
 
 
 def _is_slowed(plan: _Timed, move: TravelMove, rules: TravelRules) -> bool:
-    """Whether a travel move takes more samples than its plan does, slowed by a little."""
-    return not move.too_long_s and len(move.joints) - 1 > np.ceil(_LITTLE * plan.natural_s * rules.rate_hz)
+    """Whether a travel move takes more samples than its plan does, slowed by a little, or slowing does not help it."""
+    takes_more = len(move.joints) - 1 > np.ceil(_LITTLE * plan.natural_s * rules.rate_hz)
+    return not move.too_long_s and bool(takes_more or (move.exact and not move.held))
+
+
+def _sooner_s(move: TravelMove, rules: TravelRules) -> float:
+    """What another travel move may last at most to be better."""
+    return (len(move.joints) - 2) / rules.rate_hz if move.held else np.inf
 
 
 def _made(
@@ -520,9 +526,7 @@ def _rise(top_mm: float, bounds: _Bounds) -> RestToRest:
     return rest_to_rest(top_mm, *bounds, _TURN_MARGIN * min(turning, acceleration))
 
 
-def _resting_move(
-    shape: _Shape, over: RestToRest, heights: _Heights, rules: TravelRules, handover_mm: float
-) -> _Timed:
+def _resting_move(shape: _Shape, over: RestToRest, heights: _Heights, rules: TravelRules, handover_mm: float) -> _Timed:
     """The travel move that is at rest at the lift height, and goes over the paper from that handover on."""
     up, down = (
         rest_to_rest(rules.lift_mm - foot, bounds[0], RESTING_SHARE * bounds[1], RESTING_SHARE * bounds[2])

@@ -9,6 +9,7 @@ import pytest
 
 from planner.arms.arm_file import read_arm_file
 from planner.arms.arm_text import arm_toml
+from planner.arms.usual_settings import usual_clearance_mm
 from planner.arrays import FloatArray
 from planner.error_model.believed import believed
 from planner.error_model.calibration.calibrate import Calibrated, calibrate
@@ -91,6 +92,27 @@ def test_how_sure_tips_are_is_told_where_drawings_are_drawn(sheet49: Drawn, true
     assert 1 / 1.5 < tip_mm / np.sqrt((errors[:, :2] ** 2).mean()) < 1.5
     assert 1 / 1.5 < height_mm / np.sqrt((errors[:, 2] ** 2).mean()) < 1.5
     assert errors.max() < 1.5
+
+
+def test_the_clearance_follows_what_is_known_of_the_height_unless_somebody_chose_another(
+    sheet49: Drawn, true_arms: list[TrueArm]
+) -> None:
+    """At the clearance the true arm's pen has left the paper at 95 of 100 places."""
+    sheet = sheet49.sheet(sheet49.tips_mm(true_arms[0]))
+    found = calibrate(sheet49.arm, [sheet])
+    clearance_mm = found.arm.pen.clearance_mm
+    assert clearance_mm == usual_clearance_mm(found.arm) != sheet49.arm.pen.clearance_mm
+    joints = drawn_joints(ArmModel(sheet49.arm))
+    told = np.column_stack([curve.told(joints[:, k]) for k, curve in enumerate(found.fit.model.curves)])
+    too_low_mm = (
+        tips_of(found.fit.model.geometry, joints).tip_mm[:, 2] - true_arms[0].tip_mm(true_arms[0].angles(told))[:, 2]
+    )
+    assert (too_low_mm < clearance_mm).mean() >= 0.95
+    assert f"the pen is clear of the paper from {clearance_mm:g} mm on" in "\n".join(lines(found, NOTHING))
+    own = replace(sheet49.arm, pen=replace(sheet49.arm.pen, clearance_mm=1.3))
+    again = replace(sheet49.arm, accuracy=found.arm.accuracy, pen=replace(own.pen, clearance_mm=clearance_mm))
+    assert calibrate(own, [sheet]).arm.pen.clearance_mm == 1.3
+    assert calibrate(again, [sheet]).arm.pen.clearance_mm == clearance_mm
 
 
 def test_gravity_that_keeps_joints_on_one_side_is_found(sheet49: Drawn) -> None:

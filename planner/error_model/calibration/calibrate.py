@@ -9,6 +9,7 @@ import numpy as np
 
 from planner.arms.accuracy import Accuracy
 from planner.arms.arm import Arm
+from planner.arms.usual_settings import usual_clearance_mm
 from planner.arrays import FloatArray
 from planner.error_model.believed import arm_of, believed
 from planner.error_model.calibration.fit import Fit, Marks, fit
@@ -119,6 +120,8 @@ def calibrate(arm: Arm, sheets: Sequence[Sheet]) -> Calibrated:
     exchanged = _exchanged(found, names, np.concatenate([marks.tips_mm for marks in sets]))
     pen = replace(arm.pen, speed_mm_s=min(arm.pen.speed_mm_s, _BRISK_MM_S)) if has_pulses else arm.pen
     calibrated = replace(arm_of(model, arm), accuracy=accuracy, pen=pen)
+    if arm.pen.clearance_mm == usual_clearance_mm(arm):  # another one is what somebody wants
+        calibrated = replace(calibrated, pen=replace(pen, clearance_mm=usual_clearance_mm(calibrated)))
     return Calibrated(
         calibrated,
         found,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from planner.arms.usual_settings import usual_clearance_mm
 from planner.arrays import FloatArray
 from planner.error_model.calibration.calibrate import Calibrated
 from planner.error_model.calibration.parameters import Parameters
@@ -50,6 +51,11 @@ def lines(found: Calibrated, expected: Prediction) -> list[str]:
         f"{np.degrees(paper.yaw_rad):.2f} deg and tilted by {np.degrees(paper.tilt_x_rad):.2f} and "
         f"{np.degrees(paper.tilt_y_rad):.2f} deg"
     )
+    if arm.accuracy is not None and arm.pen.clearance_mm == usual_clearance_mm(arm):
+        said.append(
+            f"the pen is clear of the paper from {arm.pen.clearance_mm:g} mm on, as its height is off by "
+            f"{arm.accuracy.height_mm:.2g} mm"
+        )
     if found.untold:
         said.append(f"the marks tell little of: {', '.join(found.untold)}")
     said += [f"only together are known: {one} and {other}" for one, other in found.gauges]
