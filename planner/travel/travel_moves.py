@@ -165,15 +165,20 @@ def _along(kinematics: Kinematics, limits: Limits, rules: TravelRules, shapes: S
         quick = [k for k, plan in enumerate(tried) if plan.natural_s <= sooner_s[k]]
         made = _made(kinematics, limits, rules, [tried[k] for k in quick], sooner_s[quick])
         for index, move in zip(one[quick].tolist(), made, strict=True):
-            moves[index] = min(moves[index], move, key=lambda one: (not one.exact, not one.held, len(one.joints)))
+            moves[index] = min(moves[index], move, key=_preferred)
         slow = np.unique(one[quick])
     return moves
+
+
+def _preferred(move: TravelMove) -> tuple[bool, bool, int]:
+    """The least is the best."""
+    return not move.exact, not move.held, len(move.joints)
 
 
 def _is_slowed(plan: _Timed, move: TravelMove, rules: TravelRules) -> bool:
     """Whether a travel move takes more samples than its plan does, slowed by a little, or slowing does not help it."""
     takes_more = len(move.joints) - 1 > np.ceil(_LITTLE * plan.natural_s * rules.rate_hz)
-    return not move.too_long_s and bool(takes_more or (move.exact and not move.held))
+    return move.exact and not move.too_long_s and bool(takes_more or not move.held)
 
 
 def _sooner_s(move: TravelMove, rules: TravelRules) -> float:
@@ -405,8 +410,11 @@ def _timed(
     rest = _ways(shapes, slopes, limits, np.full(len(shapes), RESTING_SHARE))
     least_mm = np.minimum(handover * np.full(len(shapes), rules.clearance_mm), rules.lift_mm)
     best = [
-        min((_resting_move(*each, rules, mm), *_hops_on_the_spot(*each, rules)), key=lambda made: made.natural_s)
-        for *each, mm in zip(shapes, rest, heights, least_mm.tolist(), strict=True)
+        min(
+            (_resting_move(shape, over, height, rules, mm), *_hops_on_the_spot(shape, over, height, rules)),
+            key=lambda candidate: candidate.natural_s,
+        )
+        for shape, over, height, mm in zip(shapes, rest, heights, least_mm.tolist(), strict=True)
     ]
     candidates = quickest_candidates(
         slopes, limits, rules.clearance_mm, rules.lift_mm, rules.lowering_speed_mm_s, least_mm
