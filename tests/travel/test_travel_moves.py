@@ -283,7 +283,7 @@ def _samples(arm: Arm, limits: Limits, rate_hz: float) -> list[int]:
 
 
 @pytest.mark.parametrize("name", DRAWING_ARMS)
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=12)
 @given(data=st.data())
 def test_no_limit_of_a_joint_that_is_relaxed_costs_time(name: str, data: st.DataObject) -> None:
     """Across the whole paper up to two percent are left: formulas take joints to follow their slopes, and where those
@@ -294,7 +294,7 @@ def test_no_limit_of_a_joint_that_is_relaxed_costs_time(name: str, data: st.Data
 
 
 @pytest.mark.parametrize("name", DRAWING_ARMS)
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=12)
 @given(data=st.data())
 def test_nor_does_it_where_servos_take_few_samples(name: str, data: st.DataObject) -> None:
     """A quicker pen goes further between two samples, and is held back there: never by more than rounding each move to
