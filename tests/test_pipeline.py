@@ -14,7 +14,9 @@ import shapely
 from hypothesis import HealthCheck, given, settings
 
 from planner import pen_drawing
+from planner.arms.accuracy import Accuracy
 from planner.arms.arm_file import arms_folder
+from planner.arms.usual_settings import usual_clearance_mm
 from planner.arrays import FloatArray
 from planner.checking.check import check_trajectory
 from planner.drawing.metric import Metric
@@ -270,6 +272,23 @@ def test_the_pen_keeps_to_its_speed(tmp_path: Path) -> None:
     tips = tips_by_formula(arm_table("drawing_arm"), trajectory.positions)
     speeds = np.concatenate([np.linalg.norm(np.diff(line, axis=0), axis=1) for line in runs(trajectory, tips)]) * 100
     assert 24.0 < speeds.max() <= 25.0 * 1.01
+
+
+def test_the_clearance_of_a_calibrated_arm_is_told_with_its_reason(tmp_path: Path) -> None:
+    bare = load_once("drawing_arm")
+    known = replace(bare, accuracy=Accuracy(49, 0.1, 0.2, (0.0,) * bare.n_joints))
+    usual = replace(known, pen=replace(known.pen, clearance_mm=usual_clearance_mm(known)))
+    file = tmp_path / "drawing.svg"
+    file.write_text(svg_of(FACE, 'viewBox="0 0 100 100"'), encoding="utf-8")
+    told = [
+        [line for line in plan(file, PlanSettings(), unheard, arm=arm).summary.remarks if "clear of the paper" in line]
+        for arm in (usual, known, bare)
+    ]
+    assert told == [
+        ["the pen is clear of the paper at 0.53 mm, by what this arm's height is expected to be off by: 0.2 mm"],
+        [],
+        [],
+    ]
 
 
 def test_taps_and_dwells_rest_on_the_paper(tmp_path: Path) -> None:

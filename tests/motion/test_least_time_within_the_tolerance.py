@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
@@ -55,6 +56,17 @@ def test_relaxing_the_tolerance_makes_no_stroke_slower(stroke: FloatArray) -> No
     times = [duration_s(context_of(tolerance_mm), stroke) for tolerance_mm in _TOLERANCES_MM]
     for tight, loose in pairwise(times):
         assert loose <= (1 + _TIMING) * tight + 0.001
+
+
+@pytest.mark.parametrize("rate_hz", [50.0, 1000.0])
+@settings(deadline=None, max_examples=8)
+@given(stroke=strokes())
+def test_a_faster_pen_makes_no_stroke_slower(rate_hz: float, stroke: FloatArray) -> None:
+    """But by the sample that rounding to whole ones takes."""
+    context = context_of(0.05, rate_hz)
+    at = [replace(context, settings=replace(context.settings, speed_mm_s=speed)) for speed in (20.0, 40.0, 80.0, 400.0)]
+    for tight, loose in pairwise([duration_s(each, stroke) for each in at]):
+        assert loose <= (1 + _TIMING) * tight + 1 / rate_hz
 
 
 @pytest.mark.parametrize("noise_mm", [0.0, 1e-4, 2e-3])
