@@ -125,14 +125,17 @@ def _planned(arm: Arm, motion: LadderMotion, options: argparse.Namespace) -> lis
         " limits of acceleration and jerk; plan run asks for --beyond-limits"
     ]
     for joint, one in enumerate(arm.joints):
+        ladders = motion.ladders(joint)
         for quantity in Quantity:
-            ladder = motion.ladder(joint, quantity)
+            if quantity not in ladders:
+                lines.append(f"{one.name}: no room to try its {quantity}")
+                continue
+            ladder = ladders[quantity]
             start_s, end_s = (at / options.rate for at in (ladder[0].first, ladder[-1].last))
             low, high = (step.level / one.per_file_unit for step in (ladder[0], ladder[-1]))
-            unit = f"{one.file_unit}/s{'³' if quantity is Quantity.JERK else '²'}"
             lines.append(
                 f"{one.name}: {len(ladder)} steps of {quantity}, {start_s:.1f} to {end_s:.1f} s, from {low:.4g} to"
-                f" {high:.4g} {unit}"
+                f" {high:.4g} {one.file_unit}{quantity.per_time}"
             )
     return lines
 
@@ -170,18 +173,20 @@ def _measured(arm: Arm, motion: LadderMotion, options: argparse.Namespace) -> li
 
 
 def _told(arm: Arm, found: Found) -> str:
-    from planner.identification.motion import Quantity
+    from planner.identification.found import Outcome
+    from planner.identification.motion import limits_of
 
     joint = arm.joints[found.joint]
-    before = joint.max_jerk if found.quantity is Quantity.JERK else joint.max_acceleration
-    unit = f"{joint.file_unit}/s{'³' if found.quantity is Quantity.JERK else '²'}"
-    why = ""
-    if found.is_end:
-        why = " (the last step: it may have more)"
-    elif found.by_jerk:
-        why = " (jerk gave in first: it may have more)"
-    per = joint.per_file_unit
-    return (
-        f"{joint.name}: {found.quantity} {before / per:.4g} -> {found.proposed / per:.4g} {unit}; followed"
-        f" {found.level / per:.4g}, step {found.step} of {found.steps}{why}"
+    per, unit = joint.per_file_unit, f"{joint.file_unit}{found.quantity.per_time}"
+    before, proposed, followed, beyond = (
+        f"{value / per:.4g}"
+        for value in (limits_of(joint).of(found.quantity), found.proposed, found.followed, found.beyond)
     )
+    known = {
+        Outcome.FOUND: f"it is between {followed} and {beyond}",
+        Outcome.ROUGHLY: f"roughly: it is between {followed} and {beyond}",
+        Outcome.HIDDEN: f"at least {followed}: something else gave in before it",
+        Outcome.NOT_REACHED: f"not reached: at least {followed}",
+        Outcome.UNKNOWN: "not known: nothing was to be seen of it",
+    }[found.outcome]
+    return f"{joint.name}: {found.quantity} {before} -> {proposed} {unit}; {known}"

@@ -1,95 +1,129 @@
-"""Limits that an arm is found to have: by what was measured of a test motion, or by what somebody saw of it."""
+"""Limits that an arm is found to have: by what was measured of a test motion, or by what somebody saw of it.
+
+A step that is not followed asks for too much of something. It is what its ladder tries, where all else that the step
+asks for was followed in the other ladders; or else nothing is told of it but what was followed. Nothing is proposed
+that was not followed.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import Enum
 
 import numpy as np
 
 from planner.arms.arm import Arm
 from planner.errors import CalibrationError
 from planner.identification.measured import Measured
-from planner.identification.motion import LadderMotion, Quantity, Step
-from planner.identification.response import GENTLE, Trial, answer, steps_followed
+from planner.identification.motion import LadderMotion, Quantity, Step, greatest_differences, limits_of
+from planner.identification.profile import Limits, there_and_back
+from planner.identification.response import BY, Following, Trial, answer, followings
 
-MARGIN = {Quantity.JERK: 0.83, Quantity.ACCELERATION: 0.9}
-"""Of what was found, what is proposed: a step that is not quite followed may not show, jerk less than acceleration, and
-servos get warm."""
-_NOISE = 0.0005
-"""Least error that shows, as a share of a way."""
+MARGIN = {Quantity.VELOCITY: 0.95, Quantity.ACCELERATION: 0.9, Quantity.JERK: 0.85}
+"""Of what was followed, what is proposed: servos get warm, and batteries empty."""
 _FEWEST_A_WAY = 4
-_AT_LIMIT = 0.95
+_CLOSE = 1.15
+"""A limit is found where the first step that is not followed asks for no more than so many times the last that is."""
+
+
+class Outcome(Enum):
+    FOUND = "found"
+    ROUGHLY = "between two steps that are far apart"
+    HIDDEN = "something else gave in first"
+    NOT_REACHED = "every step was followed"
+    UNKNOWN = "nothing was told by any step"
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Of a joint, in rad or mm: the hardest that was followed, of `step` of `steps`; is_end: whether that was followed
-    because nothing harder was asked; by_jerk: whether the next one asked for more jerk than the joint has. proposed:
-    the limit for the arm file."""
+    """Of a joint, in rad or mm. followed: the most that was, 0 where nothing is known; beyond: what the first step asked
+    for that was not, infinite where there is none. step: of `steps`, the last that was followed. proposed: for the arm
+    file; what that says already where nothing else is known."""
 
     joint: int
     quantity: Quantity
+    outcome: Outcome
     step: int
     steps: int
-    level: float
-    is_end: bool
-    by_jerk: bool
+    followed: float
+    beyond: float
     proposed: float
 
 
 def found_by_positions(arm: Arm, motion: LadderMotion, measured: Measured, source: str) -> list[Found]:
-    """Errors: CalibrationError where too little of a joint was measured, or it follows nothing."""
+    """Errors: CalibrationError where too little of a joint was measured."""
     found = []
+    rate_hz = motion.trajectory.rate_hz
     for joint in range(arm.n_joints):
-        jerk = found_of_ladder(arm, motion, measured, joint, Quantity.JERK, source, np.inf)
-        found += [jerk, found_of_ladder(arm, motion, measured, joint, Quantity.ACCELERATION, source, jerk.level)]
+        ladders = motion.ladders(joint)
+        trials = {
+            quantity: [_trial(arm, motion, measured, step, source) for step in ladder]
+            for quantity, ladder in ladders.items()
+        }
+        followed = dict(zip(ladders, followings(list(trials.values()), rate_hz), strict=True))
+        asked = {
+            quantity: [_asked(step, trial, followed[quantity], rate_hz) for step, trial in zip(ladder, trials[quantity], strict=True)]
+            for quantity, ladder in ladders.items()
+        }
+        found += _found(arm, joint, asked, {quantity: one.followed for quantity, one in followed.items()})
     return found
 
 
-def found_of_ladder(
-    arm: Arm, motion: LadderMotion, measured: Measured, joint: int, quantity: Quantity, source: str, most_jerk: float
-) -> Found:
-    """By one ladder of a joint. most_jerk: what the joint was found to follow. Errors: as `found_by_positions`."""
-    ladder = motion.ladder(joint, quantity)
-    rate_hz = motion.trajectory.rate_hz
-    trials = [_trial(arm, motion, measured, step, source) for step in ladder]
-    followed, weights = steps_followed(trials, rate_hz, _NOISE * float(np.ptp(trials[0].told)))
-    if followed == GENTLE:
-        raise CalibrationError(
-            source,
-            f"joint {arm.joints[joint].name} follows none of the steps of {quantity} after the gentlest {GENTLE} as it"
-            " follows these: its limits in the arm file are too high, or what was measured is too coarse; halve them,"
-            " and plan another test motion",
-        )
-
-    def level(step: int, order: int) -> float:
-        """Of its answer, and not above what it was told."""
-        most = [
-            np.abs(np.diff(one, order)).max()
-            for one in (answer(trials[step].told, weights, rate_hz), trials[step].told)
-        ]
-        return float(min(most)) * rate_hz**order
-
-    is_end = followed == len(ladder)
-    by_jerk = quantity is Quantity.ACCELERATION and not is_end and level(followed, 3) > _AT_LIMIT * most_jerk
-    return _proposed(arm, ladder[followed - 1], len(ladder), level(followed - 1, quantity.order), is_end, by_jerk)
-
-
-def found_by_verdicts(arm: Arm, motion: LadderMotion, verdicts: Mapping[str, tuple[int, int]]) -> list[Found]:
-    """verdicts: of each joint the last steps, of jerk and of acceleration, that looked right. Errors:
-    CalibrationError for a step that there is not."""
+def found_by_verdicts(arm: Arm, motion: LadderMotion, verdicts: Mapping[str, Mapping[Quantity, int]]) -> list[Found]:
+    """verdicts: of each joint the last step of each ladder that looked right, 0 for none. Errors: CalibrationError for a
+    step that there is not."""
     found = []
     for name, numbers in verdicts.items():
         joint = [one.name for one in arm.joints].index(name)
-        for quantity, number in zip(Quantity, numbers, strict=True):
-            ladder = motion.ladder(joint, quantity)
-            if not 1 <= number <= len(ladder):
+        ladders = motion.ladders(joint)
+        for quantity, number in numbers.items():
+            if number > len(ladders.get(quantity, ())):
                 raise CalibrationError(
-                    "--verdicts", f"joint {name} has {len(ladder)} steps of {quantity}, from 1 on; there is no {number}"
+                    "--verdicts",
+                    f"joint {name} has {len(ladders.get(quantity, ()))} steps of {quantity}, from 1 on; there is no"
+                    f" {number}",
                 )
-            step = ladder[number - 1]
-            found.append(_proposed(arm, step, len(ladder), step.level, number == len(ladder), by_jerk=False))
+        asked = {quantity: [step.levels for step in ladder] for quantity, ladder in ladders.items()}
+        found += _found(arm, joint, asked, {quantity: numbers[quantity] for quantity in ladders})
+    return found
+
+
+def _found(
+    arm: Arm, joint: int, asked: Mapping[Quantity, list[Limits]], followed: Mapping[Quantity, int]
+) -> list[Found]:
+    """asked: by each step of the ladders of a joint; of which so many were followed."""
+    most = {
+        quantity: max(
+            (
+                one.of(quantity)
+                for ladder, steps in asked.items()
+                if ladder is quantity or quantity not in asked
+                for one in steps[: followed[ladder]]
+            ),
+            default=0.0,
+        )
+        for quantity in Quantity
+    }
+    found = []
+    for quantity, before in limits_of(arm.joints[joint]).pairs():
+        steps, number = asked.get(quantity, []), followed.get(quantity, 0)
+        refused = steps[number] if number < len(steps) else None
+        beyond = refused.of(quantity) if refused else np.inf
+        if not most[quantity]:
+            outcome = Outcome.UNKNOWN
+        elif refused is None:
+            outcome = Outcome.NOT_REACHED
+        elif any(refused.of(other) > most[other] for other in Quantity if other is not quantity):
+            outcome = Outcome.HIDDEN
+        else:
+            outcome = Outcome.FOUND if beyond <= _CLOSE * most[quantity] else Outcome.ROUGHLY
+        proposed = MARGIN[quantity] * most[quantity]
+        if outcome is Outcome.UNKNOWN or (outcome is Outcome.NOT_REACHED and proposed < before):
+            proposed = before
+        per = arm.joints[joint].per_file_unit
+        rounded = _three_digits(proposed / per) * per if proposed != before else before
+        found.append(Found(joint, quantity, outcome, number, len(steps), most[quantity], beyond, rounded))
     return found
 
 
@@ -102,15 +136,10 @@ def with_limits(arm: Arm, found: list[Found]) -> Arm:
     return replace(arm, joints=tuple(joints))
 
 
-def _proposed(arm: Arm, step: Step, steps: int, level: float, is_end: bool, by_jerk: bool) -> Found:
-    """A limit that was never reached is not lowered, and one that jerk hid is left as it is."""
-    one = arm.joints[step.joint]
-    before = one.max_jerk if step.quantity is Quantity.JERK else one.max_acceleration
-    proposed = (
-        before if by_jerk else max(before, MARGIN[step.quantity] * level) if is_end else MARGIN[step.quantity] * level
-    )
-    rounded = _three_digits(proposed / one.per_file_unit) * one.per_file_unit if proposed != before else before
-    return Found(step.joint, step.quantity, step.number, steps, level, is_end, by_jerk, rounded)
+def _asked(step: Step, trial: Trial, following: Following, rate_hz: float) -> Limits:
+    """What a step asks of the motor, behind its lag, and not above what it is told."""
+    behind = greatest_differences(answer(trial.told, following.weights, rate_hz), rate_hz)
+    return Limits(*(min(one, behind.of(quantity)) for quantity, one in step.levels.pairs()))
 
 
 def _three_digits(value: float) -> float:
@@ -121,6 +150,7 @@ def _three_digits(value: float) -> float:
 
 def _trial(arm: Arm, motion: LadderMotion, measured: Measured, step: Step, source: str) -> Trial:
     trajectory = motion.trajectory
+    rate_hz = trajectory.rate_hz
     told = arm.from_file_units(trajectory.positions[step.first : step.last + 1])[:, step.joint]
     begin_s, end_s = step.first / trajectory.rate_hz, step.last / trajectory.rate_hz
     times_s, positions = measured.of(step.joint)
@@ -132,4 +162,5 @@ def _trial(arm: Arm, motion: LadderMotion, measured: Measured, step: Step, sourc
             f"joint {arm.joints[step.joint].name} was measured {np.count_nonzero(inside)} times in step {step.number}"
             f" of {step.quantity}; {_FEWEST_A_WAY * ways} times are needed: a faster --baud may give more",
         )
-    return Trial(told, times_s[inside] - begin_s, positions[inside], step.n_way, step.n_rest)
+    limited = told[0] + there_and_back(step.way.limited(step.quantity, BY), rate_hz, step.n_way)
+    return Trial(told, limited, times_s[inside] - begin_s, positions[inside], step.n_way, step.n_rest)

@@ -11,7 +11,7 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.error_model.calibration.files import Record, cells_of, number_of
 from planner.errors import CalibrationError, UsageError
-from planner.identification.motion import LadderMotion
+from planner.identification.motion import LadderMotion, Quantity
 
 _SAME = 1e-3
 """us or counts: records have four decimals."""
@@ -83,21 +83,22 @@ def read_positions(source: Path, arm: Arm, record: Record, begin_s: float) -> Me
     return Measured(table[:, 0] - begin_s, arm.from_file_units(table[:, 1:]))
 
 
-def read_verdicts(text: str, arm: Arm) -> dict[str, tuple[int, int]]:
-    """`q1=5,q2=7/4`: of each joint the last step that looked right, of jerk and of acceleration; one number is both.
-    Errors: UsageError."""
+def read_verdicts(text: str, arm: Arm) -> dict[str, dict[Quantity, int]]:
+    """`q1=14/12/9,q2=7`: of each joint the last step that looked right, of speed, acceleration and jerk, 0 for none; one
+    number is all three. Errors: UsageError."""
     names = [joint.name for joint in arm.joints]
-    verdicts: dict[str, tuple[int, int]] = {}
+    verdicts: dict[str, dict[Quantity, int]] = {}
     for part in text.split(","):
         name, equals, numbers = (cell.strip() for cell in part.partition("="))
-        jerk, slash, acceleration = numbers.partition("/")
-        if not equals or not jerk.isdecimal() or not (acceleration.isdecimal() if slash else not acceleration):
-            raise UsageError(f"--verdicts: '{part.strip():.40}' is no verdict; wanted such as q1=5 or q1=5/7")
+        cells = [cell.strip() for cell in numbers.split("/")]
+        if not equals or len(cells) not in (1, len(Quantity)) or not all(cell.isdecimal() for cell in cells):
+            raise UsageError(f"--verdicts: '{part.strip():.40}' is no verdict; wanted such as q1=14 or q1=14/12/9")
         if name not in names:
             raise UsageError(f"--verdicts: there is no joint '{name:.40}' (joints: {', '.join(names)})")
         if name in verdicts:
             raise UsageError(f"--verdicts: joint {name} is there twice")
-        if len(jerk + acceleration) > 12:
+        if max(map(len, cells)) > 6:
             raise UsageError(f"--verdicts: joint {name} has no step of such a number")
-        verdicts[name] = int(jerk), int(acceleration or jerk)
+        steps = [int(cell) for cell in cells] * (1 if len(cells) > 1 else len(Quantity))
+        verdicts[name] = dict(zip(Quantity, steps, strict=True))
     return verdicts

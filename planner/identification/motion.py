@@ -1,52 +1,45 @@
 """A test motion: one joint after the other goes back and forth, each step of it a little harder than the one before.
 
-Two ladders a joint. The first climbs in jerk, at an acceleration below the arm's limit; the second in acceleration,
-with as little jerk as speed and room allow, until that goes beyond the factor too. The joint comes slowly to where its
-ladders begin, and goes slowly back.
+Three ladders a joint, in speed, in acceleration, and in jerk. Each begins at a tenth of the limits of the arm file, which
+may be far too high. Up to these limits all three grow together, so that a step is the one before on a larger scale, and
+the tried one is nearer to its limit than the others; beyond, it grows alone. Ladders keep to the middle half of the
+room of a joint: one that does not follow overshoots, and may do so by half of a way. The joint comes slowly to where
+its ladders begin, and goes slowly back.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 
-from planner.arms.arm import Arm
+from planner.arms.arm import Arm, Joint
 from planner.arrays import FloatArray
-from planner.errors import PlanError
-from planner.identification.profile import Way, there_and_back, way_of_acceleration, way_of_jerk
+from planner.identification.profile import Limits, Quantity, Way, samples_of_way, there_and_back, way_at
 from planner.identification.room import room_of
 from planner.trajectory import TEST_MOTION, TRAVELLING, Trajectory
 
-USUAL_FACTOR, LEAST_FACTOR, MOST_FACTOR = 3.0, 1.2, 10.0
-FIRST = 0.6
-"""The first step, as a factor of the arm's limits: well within what they should be."""
-RATIO = 1.05
-_ACCELERATION = 0.8
-"""Of its limit, where it is jerk that is tried."""
-_VELOCITY = 0.95
-_SLOW = 0.2
-"""Of every limit, on the way to a ladder and back."""
+USUAL_FACTOR, LEAST_FACTOR, MOST_FACTOR = 2.0, 1.2, 10.0
+FIRST, _FINE_FROM = 0.1, 0.5
+"""The first step, and the one from which on they are small, as factors of the arm's limits."""
+COARSE, FINE = 1.25, 1.08
+_OTHERS = {
+    Quantity.VELOCITY: Limits(1.0, 0.75, 0.75),
+    Quantity.ACCELERATION: Limits(0.85, 1.0, 0.8),
+    Quantity.JERK: Limits(0.85, 0.8, 1.0),
+}
+"""Of the limits, where one of them is tried."""
+_SLOW = 0.1
+"""Of every limit, on the way to a ladder and back: as its first step."""
 _REST_S = 0.5
 _GROWS = 1.01
 """A step that samples at the rate cannot show to be harder than the one before is none."""
-_FEWEST = 8
-
-
-class Quantity(StrEnum):
-    JERK = "jerk"
-    ACCELERATION = "acceleration"
-
-    @property
-    def order(self) -> int:
-        return 3 if self is Quantity.JERK else 2
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
     """Samples `first` to `last` of the motion. number: from 1 on, in its ladder. n_way, n_rest: samples of each way
-    with its rest, and of the rest. level: the greatest difference of the samples, of the order of what is tried."""
+    with its rest, and of the rest. levels: the greatest differences of the samples."""
 
     joint: int
     quantity: Quantity
@@ -55,7 +48,13 @@ class Step:
     last: int
     n_way: int
     n_rest: int
-    level: float
+    way: Way
+    levels: Limits
+
+    @property
+    def level(self) -> float:
+        """Of what is tried."""
+        return self.levels.of(self.quantity)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -65,13 +64,17 @@ class LadderMotion:
     trajectory: Trajectory
     steps: tuple[Step, ...]
 
-    def ladder(self, joint: int, quantity: Quantity) -> tuple[Step, ...]:
-        return tuple(step for step in self.steps if step.joint == joint and step.quantity is quantity)
+    def ladders(self, joint: int) -> dict[Quantity, tuple[Step, ...]]:
+        """Of a joint, without those that there is no room for."""
+        found: dict[Quantity, tuple[Step, ...]] = {}
+        for step in self.steps:
+            if step.joint == joint:
+                found[step.quantity] = (*found.get(step.quantity, ()), step)
+        return found
 
 
 def make_motion(arm: Arm, name: str, reach: FloatArray | None, rate_hz: float, factor: float) -> LadderMotion:
-    """The test motion of `arm`, which its trajectory calls `name`, up to `factor` times its limits of acceleration and
-    jerk. The same for the same arguments. reach: (n_joints, 2) where its servos get to. Errors: PlanError."""
+    """The test motion of `arm`, which its trajectory calls `name`, up to `factor` times its limits. The same for the same arguments. reach: (n_joints, 2) where its servos get to. Errors: PlanError."""
     room = room_of(arm, reach)
     parts = [room.pose[None]]
     steps: list[Step] = []
@@ -103,40 +106,53 @@ def make_motion(arm: Arm, name: str, reach: FloatArray | None, rate_hz: float, f
     return LadderMotion(trajectory, tuple(steps))
 
 
+def scales(factor: float) -> list[float]:
+    """The steps of a ladder, as factors of the arm's limits."""
+    found = [FIRST]
+    while found[-1] < factor:
+        found.append(min(found[-1] * (COARSE if found[-1] * COARSE < _FINE_FROM else FINE), factor))
+    return found
+
+
 def _ladders(
     arm: Arm, joint: int, low: float, length: float, rate_hz: float, factor: float, begin: int
 ) -> tuple[FloatArray, list[Step]]:
-    """Positions (n,) of a joint, which is at `low` at sample `begin`, after that; and the steps. Errors: PlanError."""
-    positions, steps = [], []
+    """Positions (n,) of a joint, which is at `low` at sample `begin`, after that; and the steps."""
+    positions, steps = [np.empty(0)], []
     for quantity in Quantity:
         level, number = 0.0, 0
-        for at in FIRST * RATIO ** np.arange(int(np.log(factor / FIRST) / np.log(RATIO) + 1e-9) + 1):
-            way = _way(arm, joint, quantity, float(at), length)
-            if way.jerk > factor * arm.joints[joint].max_jerk:
+        for scale in scales(factor):
+            way = _way(arm.joints[joint], quantity, scale, length)
+            if way is None or way.jerk > factor * arm.joints[joint].max_jerk:
                 break
-            samples, n_way, n_rest = there_and_back(way, rate_hz)
-            reached = float(np.abs(np.diff(samples, quantity.order)).max()) * rate_hz**quantity.order
-            if reached < _GROWS * level:
+            n_way, n_rest = samples_of_way(way, rate_hz)
+            samples = there_and_back(way, rate_hz, n_way)
+            levels = greatest_differences(samples, rate_hz)
+            if levels.of(quantity) < _GROWS * level:
                 break
-            level, number = reached, number + 1
+            level, number = levels.of(quantity), number + 1
             positions.append(low + samples[1:])
             last = begin + len(samples) - 1
-            steps.append(Step(joint, quantity, number, begin, last, n_way, n_rest, level))
+            steps.append(Step(joint, quantity, number, begin, last, n_way, n_rest, way, levels))
             begin = last
-        if number < _FEWEST:
-            raise PlanError(
-                f"arm {arm.name}: joint {arm.joints[joint].name} has room for {number} step(s) of {quantity}, of"
-                f" {_FEWEST} that are needed; a higher --rate, or another park pose, may give it more"
-            )
     return np.concatenate(positions), steps
 
 
-def _way(arm: Arm, joint: int, quantity: Quantity, at: float, length: float) -> Way:
-    one = arm.joints[joint]
-    velocity = _VELOCITY * one.max_velocity
-    if quantity is Quantity.JERK:
-        return way_of_jerk(at * one.max_jerk, _ACCELERATION * one.max_acceleration, velocity, length)
-    return way_of_acceleration(at * one.max_acceleration, velocity, length)
+def greatest_differences(samples: FloatArray, rate_hz: float) -> Limits:
+    """Of each order, of (n,) samples."""
+    return Limits(*(float(np.abs(np.diff(samples, order)).max()) * rate_hz**order for order in (1, 2, 3)))
+
+
+def _way(joint: Joint, quantity: Quantity, scale: float, length: float) -> Way | None:
+    """Up to the limits everything grows, and beyond what is tried."""
+    together, limits = min(scale, 1.0), limits_of(joint)
+    shares = _OTHERS[quantity]
+    most = Limits(*(together * shares.of(one) * limit for one, limit in limits.pairs()))
+    return way_at(quantity, most.with_one(quantity, scale * limits.of(quantity)), together * length)
+
+
+def limits_of(joint: Joint) -> Limits:
+    return Limits(joint.max_velocity, joint.max_acceleration, joint.max_jerk)
 
 
 def _slowly(arm: Arm, joint: int, start: float, goal: float, rate_hz: float) -> FloatArray:
@@ -154,9 +170,9 @@ def _slowly(arm: Arm, joint: int, start: float, goal: float, rate_hz: float) -> 
 
 
 def _beyond(arm: Arm, positions: FloatArray, rate_hz: float) -> float:
-    """How many times the limits of acceleration and jerk the motion goes to, rounded up."""
+    """How many times its limits the motion goes to, rounded up."""
     shares = [
         np.abs(np.diff(positions, order, axis=0)).max(axis=0) * rate_hz**order / limit
-        for order, limit in ((2, arm.max_acceleration), (3, arm.max_jerk))
+        for order, limit in ((1, arm.max_velocity), (2, arm.max_acceleration), (3, arm.max_jerk))
     ]
     return float(np.ceil(100 * np.max(shares)) / 100)

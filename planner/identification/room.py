@@ -17,13 +17,13 @@ _STATIONS = 121
 """Positions of a joint at which it is asked whether all is clear."""
 _KEPT = 0.03
 """Share of a joint's range that is left free at its ends: overshoot has to end somewhere."""
-_LARGEST = 0.5
-"""Of a joint's range: more room than this is not needed."""
+_TRIED = 0.5
+"""Of the room, its middle: a joint that does not follow may overshoot by half of a way."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Room:
-    """pose: (n_joints,) where all joints wait. low, high: (n_joints,) where each may be while the others wait."""
+    """pose: (n_joints,) where all joints wait. low, high: (n_joints,) between which each is tried while the others wait."""
 
     pose: FloatArray
     low: FloatArray
@@ -58,7 +58,7 @@ def room_of(arm: Arm, reach: FloatArray | None, seed: int = 0) -> Room:
 
 
 def _around(kinematics: Kinematics, pose: FloatArray, low: FloatArray, high: FloatArray) -> Room:
-    """The part of each joint's range about the pose in which nothing is touched, at most so large as is needed."""
+    """The middle of the part of each joint's range about the pose in which nothing is touched."""
     lows, highs = pose.copy(), pose.copy()
     for joint in range(len(pose)):
         stations = np.linspace(low[joint], high[joint], _STATIONS)
@@ -71,16 +71,9 @@ def _around(kinematics: Kinematics, pose: FloatArray, low: FloatArray, high: Flo
         blocked = np.flatnonzero(~clear)
         first = blocked[blocked < at].max(initial=-1) + 1
         last = blocked[blocked > at].min(initial=_STATIONS) - 1
-        lows[joint], highs[joint] = _least(stations[first], stations[last], pose[joint], _LARGEST * (high - low)[joint])
+        middle, half = (stations[first] + stations[last]) / 2, (stations[last] - stations[first]) / 2
+        lows[joint], highs[joint] = middle - _TRIED * half, middle + _TRIED * half
     return Room(pose, lows, highs)
-
-
-def _least(low: float, high: float, at: float, length: float) -> tuple[float, float]:
-    """The part of that length about `at`, or all."""
-    if high - low <= length:
-        return low, high
-    begin = min(max(at - length / 2, low), high - length)
-    return begin, begin + length
 
 
 def _is_clear(kinematics: Kinematics, joints: FloatArray) -> BoolArray:
