@@ -156,7 +156,10 @@ def _read(arm: Arm, motion: LadderMotion, options: argparse.Namespace) -> list[s
     )
     with written_aside(options.output) as file:
         cast("IO[str]", file).write(text)
-    return [_told(arm, one) for one in found]
+    lines = [_told(arm, one) for one in found]
+    if any(one.wants_another for one in found):
+        lines.append("not all is known: plan another test motion with the new file, and it begins where this one ended")
+    return lines
 
 
 def _measured(arm: Arm, motion: LadderMotion, options: argparse.Namespace) -> list[Found]:

@@ -7,7 +7,7 @@ that was not followed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -20,11 +20,12 @@ from planner.identification.motion import LadderMotion, Quantity, Step, greatest
 from planner.identification.profile import Limits, there_and_back
 from planner.identification.response import BY, Following, Trial, answer, followings
 
-MARGIN = {Quantity.VELOCITY: 0.95, Quantity.ACCELERATION: 0.9, Quantity.JERK: 0.85}
+MARGIN = {Quantity.VELOCITY: 0.95, Quantity.ACCELERATION: 0.9, Quantity.JERK: 0.9}
 """Of what was followed, what is proposed: servos get warm, and batteries empty."""
 _FEWEST_A_WAY = 4
-_CLOSE = 1.15
-"""A limit is found where the first step that is not followed asks for no more than so many times the last that is."""
+_CLOSE = 1.15**2
+"""A limit is found where the first step that is not followed asks for no more than so many times the last that is: its
+middle is off by 15 % at most."""
 
 
 class Outcome(Enum):
@@ -33,6 +34,9 @@ class Outcome(Enum):
     HIDDEN = "something else gave in first"
     NOT_REACHED = "every step was followed"
     UNKNOWN = "nothing was told by any step"
+
+
+_AT_LEAST = (Outcome.NOT_REACHED, Outcome.HIDDEN)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +54,11 @@ class Found:
     beyond: float
     proposed: float
 
+    @property
+    def wants_another(self) -> bool:
+        """Whether a test motion of an arm with what is proposed may tell more."""
+        return self.outcome is not Outcome.FOUND and self.steps > 0
+
 
 def found_by_positions(arm: Arm, motion: LadderMotion, measured: Measured, source: str) -> list[Found]:
     """Errors: CalibrationError where too little of a joint was measured."""
@@ -66,7 +75,7 @@ def found_by_positions(arm: Arm, motion: LadderMotion, measured: Measured, sourc
             quantity: [_asked(step, trial, followed[quantity], rate_hz) for step, trial in zip(ladder, trials[quantity], strict=True)]
             for quantity, ladder in ladders.items()
         }
-        found += _found(arm, joint, asked, {quantity: one.followed for quantity, one in followed.items()})
+        found += _found(arm, joint, ladders, asked, {quantity: (one.followed, one.refused) for quantity, one in followed.items()})
     return found
 
 
@@ -85,21 +94,30 @@ def found_by_verdicts(arm: Arm, motion: LadderMotion, verdicts: Mapping[str, Map
                     f" {number}",
                 )
         asked = {quantity: [step.levels for step in ladder] for quantity, ladder in ladders.items()}
-        found += _found(arm, joint, asked, {quantity: numbers[quantity] for quantity in ladders})
+        followed = {
+            quantity: (numbers[quantity], numbers[quantity] + 1 if numbers[quantity] < len(ladder) else None)
+            for quantity, ladder in ladders.items()
+        }
+        found += _found(arm, joint, ladders, asked, followed)
     return found
 
 
 def _found(
-    arm: Arm, joint: int, asked: Mapping[Quantity, list[Limits]], followed: Mapping[Quantity, int]
+    arm: Arm,
+    joint: int,
+    ladders: Mapping[Quantity, Sequence[Step]],
+    asked: Mapping[Quantity, list[Limits]],
+    followed: Mapping[Quantity, tuple[int, int | None]],
 ) -> list[Found]:
-    """asked: by each step of the ladders of a joint; of which so many were followed."""
+    """asked: of the motor, by each step of the ladders of a joint; of which so many were followed, and from some step on
+    none was."""
     most = {
         quantity: max(
             (
                 one.of(quantity)
                 for ladder, steps in asked.items()
                 if ladder is quantity or quantity not in asked
-                for one in steps[: followed[ladder]]
+                for one in steps[: followed[ladder][0]]
             ),
             default=0.0,
         )
@@ -107,9 +125,9 @@ def _found(
     }
     found = []
     for quantity, before in limits_of(arm.joints[joint]).pairs():
-        steps, number = asked.get(quantity, []), followed.get(quantity, 0)
-        refused = steps[number] if number < len(steps) else None
-        beyond = refused.of(quantity) if refused else np.inf
+        steps, (number, strange) = asked.get(quantity, []), followed.get(quantity, (0, None))
+        refused = steps[strange - 1] if strange else None
+        beyond = ladders[quantity][strange - 1].level if strange else np.inf
         if not most[quantity]:
             outcome = Outcome.UNKNOWN
         elif refused is None:
@@ -119,7 +137,7 @@ def _found(
         else:
             outcome = Outcome.FOUND if beyond <= _CLOSE * most[quantity] else Outcome.ROUGHLY
         proposed = MARGIN[quantity] * most[quantity]
-        if outcome is Outcome.UNKNOWN or (outcome is Outcome.NOT_REACHED and proposed < before):
+        if outcome is Outcome.UNKNOWN or (outcome in _AT_LEAST and proposed < before <= beyond):
             proposed = before
         per = arm.joints[joint].per_file_unit
         rounded = _three_digits(proposed / per) * per if proposed != before else before

@@ -9,26 +9,27 @@ its ladders begin, and goes slowly back.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from planner.arms.arm import Arm, Joint
 from planner.arrays import FloatArray
-from planner.identification.profile import Limits, Quantity, Way, samples_of_way, there_and_back, way_at
+from planner.identification.profile import HELD, Limits, Quantity, Way, samples_of_way, there_and_back, way_at
 from planner.identification.room import room_of
 from planner.trajectory import TEST_MOTION, TRAVELLING, Trajectory
 
-USUAL_FACTOR, LEAST_FACTOR, MOST_FACTOR = 2.0, 1.2, 10.0
+USUAL_FACTOR, LEAST_FACTOR, MOST_FACTOR = 1.6, 0.2, 10.0
 FIRST, _FINE_FROM = 0.1, 0.5
 """The first step, and the one from which on they are small, as factors of the arm's limits."""
 COARSE, FINE = 1.25, 1.08
 _OTHERS = {
     Quantity.VELOCITY: Limits(1.0, 0.75, 0.75),
-    Quantity.ACCELERATION: Limits(0.85, 1.0, 0.8),
-    Quantity.JERK: Limits(0.85, 0.8, 1.0),
+    Quantity.ACCELERATION: Limits(0.75, 1.0, 0.8),
+    Quantity.JERK: Limits(0.75, 0.8, 1.0),
 }
 """Of the limits, where one of them is tried."""
+_MOST_SPEED = 0.95
 _SLOW = 0.1
 """Of every limit, on the way to a ladder and back: as its first step."""
 _REST_S = 0.5
@@ -148,6 +149,9 @@ def _way(joint: Joint, quantity: Quantity, scale: float, length: float) -> Way |
     together, limits = min(scale, 1.0), limits_of(joint)
     shares = _OTHERS[quantity]
     most = Limits(*(together * shares.of(one) * limit for one, limit in limits.pairs()))
+    if quantity is Quantity.ACCELERATION:  # it takes speed to reach it
+        needed = (1 + HELD) * limits.acceleration**2 / most.jerk * together**2
+        most = replace(most, velocity=min(max(most.velocity, needed), _MOST_SPEED * together * limits.velocity))
     return way_at(quantity, most.with_one(quantity, scale * limits.of(quantity)), together * length)
 
 

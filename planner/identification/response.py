@@ -28,20 +28,26 @@ _KNOTS_S = (0.0, 0.01, 0.02, 0.035, 0.055, 0.085, 0.13, 0.2)
 """h is straight between these, and 0 from the last one on."""
 _GRAIN_S = 0.0025
 _N_WEIGHTS = len(_KNOTS_S) - 1
+_BEND = 0.05
+"""How much h bends from knot to knot, as far as what is measured does not tell."""
 _WHOLE = 1e6
 """How much more it counts that weights add up to 1 than any measurement."""
 _ROUNDS = 3
-_APART = 3
+_IN_A_ROW = 3
+"""So many steps have to be strange; noise makes one so, now and then."""
+_APART = 4
 """So many steps before the one in question are not asked what it should be like: the first that is not followed
 differs by little, and would be taken for the rule."""
 GENTLE = 4
 """So many steps are taken to be within the limits, or nothing can be said."""
 BY = 1.15
-_LEAST, _ERRORS = 0.35, 4.0
-"""a is above 0 from here on, and from so many standard errors on."""
-_SHOWS = 0.25
+_LEAST, _ERRORS = 0.15, 4.0
+"""a is above what is usual from so much on, and from so many standard errors of it, or of what is usual, on."""
+_OF_A_NORMAL = 1.4826
+"""Standard deviation of a normal distribution, in its median deviations."""
+_SHOWS = 0.3
 """Standard error of a, at most, where a step tells something."""
-_STRANGE = 3.0
+_STRANGE = 1.35
 """So many times the usual error, as a share of the way, is another behaviour, whatever it is like."""
 _RECENT = 7
 """So many of the steps before say what is usual."""
@@ -79,9 +85,11 @@ class Trial:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Following:
-    """followed: how many steps of a ladder were, 0 where none tells. weights: (m,) h, by the last that were."""
+    """followed: the last step of a ladder that was and tells it, 0 for none. refused: the first from which on none is,
+    None where there is none. weights: (m,) h, by those that were."""
 
     followed: int
+    refused: int | None
     weights: FloatArray
 
 
@@ -90,51 +98,63 @@ def followings(ladders: Sequence[Sequence[Trial]], rate_hz: float) -> list[Follo
     gentle = [trial for ladder in ladders for trial in ladder[:GENTLE]]
     play = float(np.median([trial.play(rate_hz) for trial in gentle]))
     systems = [[_System(trial, rate_hz, play) for trial in ladder] for ladder in ladders]
+    first = [system for ladder in systems for system in ladder[:GENTLE]]
     weights: FloatArray | None = None
     for _ in range(_ROUNDS):
         rule = _Rule(weights)
-        for system in (system for ladder in systems for system in ladder[:GENTLE]):
+        for system in first:
             rule.take(system)
         weights = rule.weights
-    return [_following(ladder, rule) for ladder in systems]
+    rough = float(np.sqrt(np.mean([system.judged(weights).off ** 2 for system in first])))
+    return [_following(ladder, rule, rough) for ladder in systems]
 
 
-def _following(ladder: Sequence[_System], gentle: _Rule) -> Following:
-    rule, followed, doubtful = gentle.copy(), 0, 0
-    usual: list[tuple[FloatArray, float]] = []
+def _following(ladder: Sequence[_System], gentle: _Rule, rough: float) -> Following:
+    """rough: how far off a joint is on gentle steps, whatever the way."""
+    rule, followed, strange = gentle.copy(), 0, 0
+    usual: list[_Judged] = []
     for number, system in enumerate(ladder, 1):
         if number - _APART > GENTLE:
             rule.take(ladder[number - _APART - 1])
         judged = system.judged(rule.weights)
-        if number > GENTLE and judged.is_strange(usual):
-            doubtful += 1
-            if doubtful == 2:
-                break
+        if number > GENTLE and judged.is_strange(usual[-_RECENT:], rough):
+            strange += 1
+            if strange == _IN_A_ROW:
+                return Following(followed, number - _IN_A_ROW + 1, rule.weights)
             continue
-        doubtful = 0
-        usual.append((judged.share, judged.error))
+        strange = 0
+        usual.append(judged)
         if judged.shows:
             followed = number
-    return Following(followed, rule.weights)
+    return Following(followed, None, rule.weights)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Judged:
-    """Of one step, there and back: a and its standard error (2,); error: root mean square, as a share of the way."""
+    """Of one step, there and back: a and its standard error (2,), and how much a of 1 is, root mean square; error: root
+    mean square of what h leaves, as a share of the way."""
 
     share: FloatArray
     doubt: FloatArray
+    size: FloatArray
     error: float
 
     @property
     def shows(self) -> bool:
         return bool(np.all(self.doubt <= _SHOWS))
 
-    def is_strange(self, usual: list[tuple[FloatArray, float]]) -> bool:
-        recent = usual[-_RECENT:]
-        share = self.share - np.median([one for one, _ in recent], axis=0)
-        error = float(np.median([one for _, one in recent]))
-        return bool(np.any(share > np.maximum(_LEAST, _ERRORS * self.doubt))) or self.error > _STRANGE * error
+    @property
+    def off(self) -> FloatArray:
+        """(2,) a, in rad or mm."""
+        return self.share * self.size
+
+    def is_strange(self, usual: list[_Judged], rough: float) -> bool:
+        """usual: of the steps before."""
+        share, its_spread = _usual(np.array([one.share for one in usual]))
+        error, errors_spread = _usual(np.array([one.error for one in usual]))
+        doubt = np.maximum(np.maximum(self.doubt, its_spread), rough / self.size)
+        is_late = np.any(np.abs(self.share - share) > np.maximum(_LEAST, _ERRORS * doubt))
+        return bool(is_late or self.error > max(_STRANGE * error, error + _ERRORS * errors_spread))
 
 
 def answer(told: FloatArray, weights: FloatArray, rate_hz: float) -> FloatArray:
@@ -178,7 +198,7 @@ class _System:
 
     def judged(self, weights: FloatArray) -> _Judged:
         residual, late = self.values(weights) - self.rows @ weights, self._late @ weights
-        share, doubt, squares = np.zeros(2), np.zeros(2), 0.0
+        share, doubt, size, squares = np.zeros(2), np.zeros(2), np.zeros(2), 0.0
         for k, way in enumerate((1.0, -1.0)):
             mine = self._way == way
             r, d = residual[mine] - residual[mine].mean(), late[mine] - late[mine].mean()
@@ -186,8 +206,15 @@ class _System:
             share[k] = r @ d / power
             left = r - share[k] * d
             doubt[k] = np.sqrt(left @ left / max(len(r) - 2, 1) / power)
+            size[k] = np.sqrt(power / len(d))
             squares += r @ r
-        return _Judged(share, doubt, float(np.sqrt(squares / len(residual)) / np.ptp(self._trial.told)))
+        return _Judged(share, doubt, size, float(np.sqrt(squares / len(residual)) / np.ptp(self._trial.told)))
+
+
+def _usual(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Median over the first axis, and the standard deviation that goes with the median deviation from it."""
+    middle: FloatArray = np.median(values, axis=0)
+    return middle, _OF_A_NORMAL * np.median(np.abs(values - middle), axis=0)
 
 
 class _Rule:
@@ -197,18 +224,29 @@ class _Rule:
         """before: weights by which the effect of the play is taken out of steps; None: the servo is where it is told."""
         self._before = before
         self._squares, self._products = np.zeros((_N_WEIGHTS, _N_WEIGHTS)), np.zeros(_N_WEIGHTS)
+        self._of_values, self._number = 0.0, 0
 
     def take(self, system: _System) -> None:
         self._squares = self._squares + system.rows.T @ system.rows
-        self._products = self._products + system.rows.T @ system.values(self._before)
+        values = system.values(self._before)
+        self._products = self._products + system.rows.T @ values
+        self._of_values += float(values @ values)
+        self._number += len(values)
 
     @property
     def weights(self) -> FloatArray:
         whole = _WHOLE * self._squares[0, 0]
-        found: FloatArray = np.linalg.solve(self._squares + whole, self._products + whole)
+        squares, products = self._squares + whole, self._products + whole
+        at_will = np.linalg.lstsq(squares, products, rcond=None)[0]
+        left = self._of_values - 2 * at_will @ self._products + at_will @ self._squares @ at_will
+        bends = np.diff(np.eye(_N_WEIGHTS + 2)[:, 1:-1], 2, axis=0)
+        found: FloatArray = np.linalg.solve(
+            squares + max(left, 0.0) / self._number / _BEND**2 * bends.T @ bends, products
+        )
         return found
 
     def copy(self) -> _Rule:
         other = _Rule(self.weights)
         other._squares, other._products = self._squares, self._products
+        other._of_values, other._number = self._of_values, self._number
         return other

@@ -17,8 +17,8 @@ _STATIONS = 121
 """Positions of a joint at which it is asked whether all is clear."""
 _KEPT = 0.03
 """Share of a joint's range that is left free at its ends: overshoot has to end somewhere."""
-_TRIED = 0.5
-"""Of the room, its middle: a joint that does not follow may overshoot by half of a way."""
+_TRIED = 2 / 3
+"""Of the room, its middle: a joint that does not follow overshoots, and may do so by a quarter of a way."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -1,11 +1,11 @@
 """Servos on a bus that hide their limits, and report where they are: an account of their own, with nothing of the
 planner's in it.
 
-A servo goes through the set points smoothly, some time after they were sent, and leaves a small change alone.
-What it is told passes a filter of third order, its lag. The motor goes after that with a speed, an acceleration, and a
-change of acceleration, that saturate at its limits, the first two at less against gravity than with it; it catches up
-as one does who knows how soon it can brake. Reports are counts, late by some milliseconds, and their times are off by
-some more.
+A servo goes through the set points smoothly, some time after they were sent. Its motor goes after them with a speed, an
+acceleration, and a change of acceleration, that saturate at their limits, the first two at less against gravity than
+with it; it catches up as one does who knows how soon it can brake. A loop of second order, its lag, stands behind
+the motor, as where firmware makes a profile and a loop follows that, or before it, as where the limits are those of the
+torque. It leaves a small change alone. Reports are counts, late by some milliseconds, and their times are off by more.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ Floats = NDArray[np.float64]
 @dataclass(frozen=True, slots=True)
 class LimitedServo:
     """velocity, acceleration, jerk: its limits in deg and s, against gravity. gravity: how much more it has with it, as
-    a share. lag_s: of its filter. latency_s: of what it is told. dead_band: change in deg that it
+    a share. lag_s: of its loop;
+    lags_before: whether that stands before the motor. latency_s: of what it is told. dead_band: change in deg that it
     leaves alone. report_hz, report_s, jitter_s: how often it reports, how late, and how much times are off."""
 
     velocity: float
@@ -33,6 +34,7 @@ class LimitedServo:
     jerk: float
     gravity: float = 0.15
     lag_s: float = 0.025
+    lags_before: bool = False
     latency_s: float = 0.004
     dead_band: float = COUNT_DEG
     report_hz: float = 100.0
@@ -48,22 +50,29 @@ def moved(servos: list[LimitedServo], told: Floats, rate_hz: float) -> Floats:
         np.array([getattr(servo, key) for servo in servos])
         for key in ("velocity", "acceleration", "jerk", "gravity", "lag_s", "latency_s", "dead_band")
     )
-    pole = 3 / lag_s
+    pole, before = 2 / lag_s, np.array([servo.lags_before for servo in servos])
     late_s = np.clip(np.arange(n_steps)[:, None] * _STEP_S - latency_s, 0.0, None)
-    goals = np.stack(
-        [CubicSpline(np.arange(len(told)) * each_s, one)(late) for one, late in zip(told.T, late_s.T, strict=True)], 1
+    splines = [CubicSpline(np.arange(len(told)) * each_s, one) for one in told.T]
+    goals, goal_speeds, goal_changes = (
+        np.stack([spline(late, order) for spline, late in zip(splines, late_s.T, strict=True)], axis=1)
+        for order in range(3)
     )
-    target, at, meant = told[0].copy(), told[0].copy(), told[0].copy()
-    speed, change, meant_speed, meant_change = np.zeros((4, len(servos)))
+    at, held, seen, lagging = (told[0].copy() for _ in range(4))
+    speed, change, seen_speed, lagging_speed = np.zeros((4, len(servos)))
     positions = np.empty((n_steps, len(servos)))
     for k in range(n_steps):
-        positions[k] = at
-        now = goals[k]
-        target = np.clip(target, now - dead_band, now + dead_band)
-        meant_jerk = pole**3 * (target - meant) - 3 * pole**2 * meant_speed - 3 * pole * meant_change
-        meant_change = meant_change + meant_jerk * _STEP_S
-        meant_speed = meant_speed + meant_change * _STEP_S
-        meant = meant + meant_speed * _STEP_S
+        positions[k] = np.where(before, held, seen)
+        lagging_change = pole**2 * (goals[k] - lagging) - 2 * pole * lagging_speed
+        meant, meant_speed, meant_change = (
+            np.where(before, one, other)
+            for one, other in (
+                (lagging, goals[k]),
+                (lagging_speed, goal_speeds[k]),
+                (lagging_change, goal_changes[k]),
+            )
+        )
+        lagging_speed = lagging_speed + lagging_change * _STEP_S
+        lagging = lagging + lagging_speed * _STEP_S
         behind = meant - at
         catching_up = np.sign(behind) * np.minimum(12 * np.abs(behind), np.sqrt(0.5 * acceleration * np.abs(behind)))
         wanted_speed = np.clip(meant_speed + catching_up, -velocity * (1 + gravity / 2), velocity)
@@ -74,6 +83,9 @@ def moved(servos: list[LimitedServo], told: Floats, rate_hz: float) -> Floats:
         change = change + np.clip(wanted - change, -jerk * _STEP_S, jerk * _STEP_S)
         speed = speed + change * _STEP_S
         at = at + speed * _STEP_S
+        held = np.clip(held, at - dead_band, at + dead_band)
+        seen_speed = seen_speed + (pole**2 * (held - seen) - 2 * pole * seen_speed) * _STEP_S
+        seen = seen + seen_speed * _STEP_S
     return positions
 
 
@@ -86,7 +98,9 @@ def reports(servo: LimitedServo, positions: Floats, random: np.random.Generator)
     return times_s, np.round(at / COUNT_DEG) * COUNT_DEG
 
 
-def any_servo(random: np.random.Generator, velocity: float, acceleration: float, jerk: float) -> LimitedServo:
+def any_servo(
+    random: np.random.Generator, velocity: float, acceleration: float, jerk: float, lags_before: bool = False
+) -> LimitedServo:
     """One with these limits, and the rest as it comes."""
     return LimitedServo(
         velocity,
@@ -94,6 +108,7 @@ def any_servo(random: np.random.Generator, velocity: float, acceleration: float,
         jerk,
         gravity=random.uniform(0.0, 0.3),
         lag_s=random.uniform(0.015, 0.04),
+        lags_before=lags_before,
         latency_s=random.uniform(0.002, 0.01),
         dead_band=random.uniform(0.5, 1.5) * COUNT_DEG,
         report_hz=float(random.choice([50.0, 100.0, 200.0])),
