@@ -144,7 +144,7 @@ def _read(arm: Arm, motion: LadderMotion, options: argparse.Namespace) -> list[s
     from planner.arms.arm_edit import edited
     from planner.arms.arm_file import arm_file_text
     from planner.files import written_aside
-    from planner.identification.found import found_by_verdicts, with_limits
+    from planner.identification.found import found_by_verdicts, may_tell_more, with_limits
     from planner.identification.measured import read_verdicts
 
     if options.verdicts is not None:
@@ -157,8 +157,9 @@ def _read(arm: Arm, motion: LadderMotion, options: argparse.Namespace) -> list[s
     with written_aside(options.output) as file:
         cast("IO[str]", file).write(text)
     lines = [_told(arm, one) for one in found]
-    if any(one.wants_another for one in found):
-        lines.append("not all is known: plan another test motion with the new file, and it begins where this one ended")
+    if joints := may_tell_more(arm, found):
+        names = ", ".join(arm.joints[joint].name for joint in joints)
+        lines.append(f"another test motion, planned for the new file, may tell more of {names}")
     return lines
 
 
@@ -188,7 +189,7 @@ def _told(arm: Arm, found: Found) -> str:
     known = {
         Outcome.FOUND: f"it is between {followed} and {beyond}",
         Outcome.ROUGHLY: f"roughly: it is between {followed} and {beyond}",
-        Outcome.HIDDEN: f"at least {followed}: something else gave in before it",
+        Outcome.HIDDEN: f"at least {followed}: {' and '.join(found.hidden_by)} may have given in before it",
         Outcome.NOT_REACHED: f"not reached: at least {followed}",
         Outcome.UNKNOWN: "not known: nothing was to be seen of it",
     }[found.outcome]

@@ -23,6 +23,7 @@ from planner.identification.response import BY, Following, Trial, answer, follow
 MARGIN = {Quantity.VELOCITY: 0.95, Quantity.ACCELERATION: 0.9, Quantity.JERK: 0.9}
 """Of what was followed, what is proposed: servos get warm, and batteries empty."""
 _FEWEST_A_WAY = 4
+_CHANGED = 0.05
 _CLOSE = 1.15**2
 """A limit is found where the first step that is not followed asks for no more than so many times the last that is: its
 middle is off by 15 % at most."""
@@ -36,14 +37,11 @@ class Outcome(Enum):
     UNKNOWN = "nothing was told by any step"
 
 
-_AT_LEAST = (Outcome.NOT_REACHED, Outcome.HIDDEN)
-
-
 @dataclass(frozen=True, slots=True)
 class Found:
     """Of a joint, in rad or mm. followed: the most that was, 0 where nothing is known; beyond: what the first step asked
     for that was not, infinite where there is none. step: of `steps`, the last that was followed. proposed: for the arm
-    file; what that says already where nothing else is known."""
+    file; what that says already where nothing speaks against it. hidden_by: what may have given in before it."""
 
     joint: int
     quantity: Quantity
@@ -53,11 +51,7 @@ class Found:
     followed: float
     beyond: float
     proposed: float
-
-    @property
-    def wants_another(self) -> bool:
-        """Whether a test motion of an arm with what is proposed may tell more."""
-        return self.outcome is not Outcome.FOUND and self.steps > 0
+    hidden_by: tuple[Quantity, ...] = ()
 
 
 def found_by_positions(arm: Arm, motion: LadderMotion, measured: Measured, source: str) -> list[Found]:
@@ -116,33 +110,66 @@ def _found(
             (
                 one.of(quantity)
                 for ladder, steps in asked.items()
-                if ladder is quantity or quantity not in asked
+                if ladder is quantity or quantity is Quantity.VELOCITY  # which shows wherever it gives in
                 for one in steps[: followed[ladder][0]]
             ),
             default=0.0,
         )
         for quantity in Quantity
     }
+    refused = {quantity: asked[quantity][strange - 1] for quantity, (_, strange) in followed.items() if strange}
+    suspects = {
+        ladder: [quantity for quantity in Quantity if quantity is ladder or step.of(quantity) > most[quantity]]
+        for ladder, step in refused.items()
+    }
     found = []
     for quantity, before in limits_of(arm.joints[joint]).pairs():
-        steps, (number, strange) = asked.get(quantity, []), followed.get(quantity, (0, None))
-        refused = steps[strange - 1] if strange else None
+        number, strange = followed.get(quantity, (0, None))
         beyond = ladders[quantity][strange - 1].level if strange else np.inf
+        others = tuple(one for one in suspects.get(quantity, ()) if one is not quantity)
         if not most[quantity]:
             outcome = Outcome.UNKNOWN
-        elif refused is None:
+        elif not strange:
             outcome = Outcome.NOT_REACHED
-        elif any(refused.of(other) > most[other] for other in Quantity if other is not quantity):
+        elif others:
             outcome = Outcome.HIDDEN
         else:
             outcome = Outcome.FOUND if beyond <= _CLOSE * most[quantity] else Outcome.ROUGHLY
+        is_bracket = outcome in (Outcome.FOUND, Outcome.ROUGHLY)
+        doubted = any(before > step.of(quantity) for ladder, step in refused.items() if quantity in suspects[ladder])
         proposed = MARGIN[quantity] * most[quantity]
-        if outcome is Outcome.UNKNOWN or (outcome in _AT_LEAST and proposed < before <= beyond):
+        if outcome is Outcome.UNKNOWN or not (is_bracket or doubted or proposed > before):
             proposed = before
         per = arm.joints[joint].per_file_unit
         rounded = _three_digits(proposed / per) * per if proposed != before else before
-        found.append(Found(joint, quantity, outcome, number, len(steps), most[quantity], beyond, rounded))
+        found.append(
+            Found(
+                joint,
+                quantity,
+                outcome,
+                number,
+                len(ladders.get(quantity, ())),
+                most[quantity],
+                beyond,
+                rounded,
+                others if outcome is Outcome.HIDDEN else (),
+            )
+        )
     return found
+
+
+def may_tell_more(arm: Arm, found: Sequence[Found]) -> list[int]:
+    """Joints that another test motion, of an arm with what is proposed, may tell more of."""
+    return [
+        joint
+        for joint in sorted({one.joint for one in found})
+        if any(one.joint == joint and one.outcome is not Outcome.FOUND for one in found)
+        and any(
+            abs(one.proposed / limits_of(arm.joints[joint]).of(one.quantity) - 1) > _CHANGED
+            for one in found
+            if one.joint == joint
+        )
+    ]
 
 
 def with_limits(arm: Arm, found: list[Found]) -> Arm:

@@ -15,7 +15,7 @@ import numpy as np
 
 from planner.arms.arm import Arm, Joint
 from planner.arrays import FloatArray
-from planner.identification.profile import HELD, Limits, Quantity, Way, samples_of_way, there_and_back, way_at
+from planner.identification.profile import HELD, Limits, Quantity, Way, fastest, samples_of_way, there_and_back, way_at
 from planner.identification.room import room_of
 from planner.trajectory import TEST_MOTION, TRAVELLING, Trajectory
 
@@ -148,6 +148,8 @@ def _way(joint: Joint, quantity: Quantity, scale: float, length: float) -> Way |
     """Up to the limits everything grows, and beyond what is tried."""
     together, limits = min(scale, 1.0), limits_of(joint)
     shares = _OTHERS[quantity]
+    if quantity is Quantity.VELOCITY:
+        limits = replace(limits, velocity=min(limits.velocity, fastest(shares.products(limits), length)))
     most = Limits(*(together * shares.of(one) * limit for one, limit in limits.pairs()))
     if quantity is Quantity.ACCELERATION:  # it takes speed to reach it
         needed = (1 + HELD) * limits.acceleration**2 / most.jerk * together**2

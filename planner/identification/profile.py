@@ -59,6 +59,9 @@ class Limits:
         values[quantity.order - 1] = value
         return Limits(*values)
 
+    def products(self, other: Limits) -> Limits:
+        return Limits(*(mine * theirs for mine, theirs in zip(self._all(), other._all(), strict=True)))
+
     def pairs(self) -> Iterator[tuple[Quantity, float]]:
         return zip(Quantity, self._all(), strict=True)
 
@@ -112,6 +115,13 @@ class Way:
         acceleration = self.acceleration / by if quantity is Quantity.ACCELERATION else self.acceleration
         climb_s = min(acceleration / jerk, (self.length / (2 * jerk)) ** (1 / 3))
         return Way(jerk, climb_s, _held_s(jerk * climb_s, climb_s, self.length), 0.0)
+
+
+def fastest(limits: Limits, length: float) -> float:
+    """The speed that there is room for, kept for a little: V (V / A + A / J + c) = D."""
+    apart_s = limits.acceleration / limits.jerk + CRUISE_S[0]
+    speed = limits.acceleration * (float(np.sqrt(apart_s**2 + 4 * length / limits.acceleration)) - apart_s) / 2
+    return speed * (1 - 1e-9)
 
 
 def way_at(quantity: Quantity, limits: Limits, length: float) -> Way | None:
