@@ -45,8 +45,8 @@ TRAVELLING = -1
 PATTERN = "pattern"
 """Value of `method` where a trajectory feels for the paper: between strokes it goes below it on purpose."""
 TEST_MOTION = "identify"
-"""Value of `method` where a trajectory tries what joints can do: it goes beyond their limits of acceleration and jerk
-on purpose, up to the factor that its header tells."""
+"""Value of `method` where a trajectory tries what joints can do: it goes beyond their limits on purpose, up to the
+factor that its header tells."""
 
 _DECIMALS = 9
 _FEWEST_DECIMALS, _MOST_DECIMALS = 6, 17
@@ -76,7 +76,7 @@ class Trajectory:
         chosen: What of the drawing was drawn.
         path_work: What was done to its lines beforehand.
         fill: How its areas were filled.
-        beyond_limits: Of a test motion alone, how many times the limits of acceleration and jerk it goes to; else 1.
+        beyond_limits: Of a test motion alone, how many times the joints' limits it goes to; else 1.
         timing: How its motions were timed.
         paper: Where the paper lies that arm millimetres are counted on, in the frame of the base.
         reading: How the drawing was read.

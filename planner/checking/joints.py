@@ -146,13 +146,13 @@ def _beyond(positions: FloatArray, low: FloatArray, high: FloatArray) -> FloatAr
 
 def rate_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
     """Velocity, acceleration and jerk by finite differences, a finding for each joint and each of them. A test motion
-    may go as far beyond the last two as its header tells."""
+    may go as far beyond them as its header tells."""
     findings = []
     rounding = trajectory.rounding
     beyond = trajectory.beyond_limits
     on_purpose = f"which may be {beyond:g} times the arm's limit in this test motion" if beyond != 1.0 else ""
     for order, check, maximum in (
-        (1, "velocity", arm.max_velocity),
+        (1, "velocity", beyond * arm.max_velocity),
         (2, "acceleration", beyond * arm.max_acceleration),
         (3, "jerk", beyond * arm.max_jerk),
     ):
@@ -174,10 +174,7 @@ def rate_limits(trajectory: Trajectory, arm: Arm) -> list[Finding]:
                     remark=", ".join(
                         filter(
                             None,
-                            (
-                                f"over {order * worst.stride} steps" if worst.stride > 1 else "",
-                                on_purpose if order > 1 else "",
-                            ),
+                            (f"over {order * worst.stride} steps" if worst.stride > 1 else "", on_purpose),
                         )
                     ),
                     per="/s" + ("" if order == 1 else "²" if order == 2 else "³"),

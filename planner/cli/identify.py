@@ -19,20 +19,21 @@ if TYPE_CHECKING:
     from planner.identification.motion import LadderMotion
 
 _DESCRIPTION = """\
-Find the limits of acceleration and jerk of an arm's joints. With --arm, plan a test motion: with the pen up, one joint
-after the other goes back and forth, each step a little harder than the one before, beyond the limits of the arm file
-on purpose. Play it with plan run --beyond-limits, then give the arm with what was recorded, or with what you saw: a new
-arm file gets the limits that were found, less a tenth. The old file stays as it is."""
+Find the limits of velocity, acceleration and jerk of an arm's joints. With --arm, plan a test motion: with the pen up,
+one joint after the other goes back and forth, each step a little harder than the one before, from a tenth of the limits
+of the arm file on and beyond them on purpose. Play it with plan run --beyond-limits, then give the arm with what was
+recorded, or with what you saw: a new arm file gets the limits that were found, less a margin. Each line says between
+what a limit is, or that it was not reached. Go on with the new file. The old one stays as it is."""
 
 _EPILOG = """\
 examples:
   plan identify --arm my_arm.toml -o test.csv
   plan run test.csv --beyond-limits --driver feetech --port /dev/ttyACM0 --record told.csv --record-positions at.csv
   plan identify my_arm.toml --record told.csv --positions at.csv -o my_arm_2.toml
-  plan identify my_arm.toml --verdicts "q1=14,q2=20/17" -o my_arm_2.toml
+  plan identify my_arm.toml --verdicts "q1=14,q2=20/17/12" -o my_arm_2.toml
 
-Verdicts are the last steps of jerk and of acceleration that looked right; one number is both.
---factor and --rate have to be the same both times."""
+Verdicts are the last steps of velocity, acceleration and jerk that looked right, 0 for none; one number is all three.
+--factor and --rate have to be the same both times. Where the file's limits are a guess, begin with --factor 0.3."""
 
 
 def identify(arguments: list[str]) -> int:
@@ -116,13 +117,13 @@ def _motion(arm: Arm, options: argparse.Namespace) -> LadderMotion:
 
 def _planned(arm: Arm, motion: LadderMotion, options: argparse.Namespace) -> list[str]:
     from planner.counted import clock
-    from planner.identification.motion import Quantity
+    from planner.identification.profile import Quantity
     from planner.trajectory import write_trajectory
 
     write_trajectory(motion.trajectory, options.output)
     lines = [
         f"a test motion of {clock(motion.trajectory.duration_s)}, up to {motion.trajectory.beyond_limits:g} times the"
-        " limits of acceleration and jerk; plan run asks for --beyond-limits"
+        f" limits{'' if motion.trajectory.beyond_limits == 1.0 else '; plan run asks for --beyond-limits'}"
     ]
     for joint, one in enumerate(arm.joints):
         ladders = motion.ladders(joint)

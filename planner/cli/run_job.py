@@ -88,8 +88,8 @@ def examine(options: argparse.Namespace) -> Job:
     trajectory = read_trajectory(options.trajectory)
     if trajectory.beyond_limits != 1.0 and not options.beyond_limits:
         raise UsageError(
-            f"{options.trajectory} is a test motion that goes to {trajectory.beyond_limits:g} times the arm's limits of"
-            " acceleration and jerk on purpose: play it with --beyond-limits, and with a hand at the switch"
+            f"{options.trajectory} is a test motion that goes to {trajectory.beyond_limits:g} times the arm's limits on"
+            " purpose: play it with --beyond-limits, and with a hand at the switch"
         )
     arm = load_arm(options.arm or trajectory.arm)
     positions = set_points(trajectory, arm, options.trajectory)

@@ -117,7 +117,7 @@ def parser() -> Parser:
     options.add_argument(
         "--beyond-limits",
         action="store_true",
-        help="play a test motion of plan identify, which goes beyond the limits of acceleration and jerk on purpose",
+        help="play a test motion of plan identify, which goes beyond the joints' limits on purpose",
     )
     options.add_argument("--quiet", action="store_true", help="no progress and no summary")
     add_events_option(options, "; keys are read from standard input, whose end stops the arm")

@@ -16,8 +16,8 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.errors import CalibrationError
 from planner.identification.measured import Measured
-from planner.identification.motion import LadderMotion, Quantity, Step, greatest_differences, limits_of
-from planner.identification.profile import Limits, there_and_back
+from planner.identification.motion import LadderMotion, Step, greatest_differences, limits_of
+from planner.identification.profile import Limits, Quantity, there_and_back
 from planner.identification.response import BY, Following, Trial, answer, followings
 
 MARGIN = {Quantity.VELOCITY: 0.95, Quantity.ACCELERATION: 0.9, Quantity.JERK: 0.9}
@@ -39,9 +39,10 @@ class Outcome(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Of a joint, in rad or mm. followed: the most that was, 0 where nothing is known; beyond: what the first step asked
-    for that was not, infinite where there is none. step: of `steps`, the last that was followed. proposed: for the arm
-    file; what that says already where nothing speaks against it. hidden_by: what may have given in before it."""
+    """Of a joint, in rad or mm. followed: the most that was, 0 where nothing is known; beyond: what the first step
+    asked for that was not, infinite where there is none. step: of `steps`, the last that was followed. proposed: for
+    the arm file; what that says already where nothing speaks against it. hidden_by: what may have given in before
+    it."""
 
     joint: int
     quantity: Quantity
@@ -54,11 +55,13 @@ class Found:
     hidden_by: tuple[Quantity, ...] = ()
 
 
-def found_by_positions(arm: Arm, motion: LadderMotion, measured: Measured, source: str) -> list[Found]:
-    """Errors: CalibrationError where too little of a joint was measured."""
+def found_by_positions(
+    arm: Arm, motion: LadderMotion, measured: Measured, source: str, joints: Sequence[int] | None = None
+) -> list[Found]:
+    """joints: which, None for all. Errors: CalibrationError where too little of a joint was measured."""
     found = []
     rate_hz = motion.trajectory.rate_hz
-    for joint in range(arm.n_joints):
+    for joint in range(arm.n_joints) if joints is None else joints:
         ladders = motion.ladders(joint)
         trials = {
             quantity: [_trial(arm, motion, measured, step, source) for step in ladder]
@@ -66,16 +69,21 @@ def found_by_positions(arm: Arm, motion: LadderMotion, measured: Measured, sourc
         }
         followed = dict(zip(ladders, followings(list(trials.values()), rate_hz), strict=True))
         asked = {
-            quantity: [_asked(step, trial, followed[quantity], rate_hz) for step, trial in zip(ladder, trials[quantity], strict=True)]
+            quantity: [
+                _asked(step, trial, followed[quantity], rate_hz)
+                for step, trial in zip(ladder, trials[quantity], strict=True)
+            ]
             for quantity, ladder in ladders.items()
         }
-        found += _found(arm, joint, ladders, asked, {quantity: (one.followed, one.refused) for quantity, one in followed.items()})
+        found += _found(
+            arm, joint, ladders, asked, {quantity: (one.followed, one.refused) for quantity, one in followed.items()}
+        )
     return found
 
 
 def found_by_verdicts(arm: Arm, motion: LadderMotion, verdicts: Mapping[str, Mapping[Quantity, int]]) -> list[Found]:
-    """verdicts: of each joint the last step of each ladder that looked right, 0 for none. Errors: CalibrationError for a
-    step that there is not."""
+    """verdicts: of each joint the last step of each ladder that looked right, 0 for none. Errors: CalibrationError for
+    a step that there is not."""
     found = []
     for name, numbers in verdicts.items():
         joint = [one.name for one in arm.joints].index(name)
@@ -103,8 +111,8 @@ def _found(
     asked: Mapping[Quantity, list[Limits]],
     followed: Mapping[Quantity, tuple[int, int | None]],
 ) -> list[Found]:
-    """asked: of the motor, by each step of the ladders of a joint; of which so many were followed, and from some step on
-    none was."""
+    """asked: of the motor, by each step of the ladders of a joint; of which so many were followed, and from some step
+    on none was."""
     most = {
         quantity: max(
             (

@@ -11,7 +11,8 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.error_model.calibration.files import Record, cells_of, number_of
 from planner.errors import CalibrationError, UsageError
-from planner.identification.motion import LadderMotion, Quantity
+from planner.identification.motion import LadderMotion
+from planner.identification.profile import Quantity
 
 _SAME = 1e-3
 """us or counts: records have four decimals."""
@@ -84,8 +85,8 @@ def read_positions(source: Path, arm: Arm, record: Record, begin_s: float) -> Me
 
 
 def read_verdicts(text: str, arm: Arm) -> dict[str, dict[Quantity, int]]:
-    """`q1=14/12/9,q2=7`: of each joint the last step that looked right, of speed, acceleration and jerk, 0 for none; one
-    number is all three. Errors: UsageError."""
+    """`q1=14/12/9,q2=7`: of each joint the last step that looked right, of velocity, acceleration and jerk, 0 for none;
+    one number is all three. Errors: UsageError."""
     names = [joint.name for joint in arm.joints]
     verdicts: dict[str, dict[Quantity, int]] = {}
     for part in text.split(","):

@@ -1,10 +1,10 @@
 """A test motion: one joint after the other goes back and forth, each step of it a little harder than the one before.
 
-Three ladders a joint, in speed, in acceleration, and in jerk. Each begins at a tenth of the limits of the arm file, which
-may be far too high. Up to these limits all three grow together, so that a step is the one before on a larger scale, and
-the tried one is nearer to its limit than the others; beyond, it grows alone. Ladders keep to the middle half of the
-room of a joint: one that does not follow overshoots, and may do so by half of a way. The joint comes slowly to where
-its ladders begin, and goes slowly back.
+Three ladders a joint, in velocity, in acceleration, and in jerk. Each begins at a tenth of the limits of the arm file,
+which may be far too high. Up to these limits all three grow together, so that a step is the one before on a larger
+scale, and the tried one is nearer to its limit than the others; beyond, it grows alone. Ladders keep to the middle of
+the room of a joint: one that does not follow overshoots. The joint comes slowly to where its ladders begin, and goes
+slowly back.
 """
 
 from __future__ import annotations
@@ -75,7 +75,8 @@ class LadderMotion:
 
 
 def make_motion(arm: Arm, name: str, reach: FloatArray | None, rate_hz: float, factor: float) -> LadderMotion:
-    """The test motion of `arm`, which its trajectory calls `name`, up to `factor` times its limits. The same for the same arguments. reach: (n_joints, 2) where its servos get to. Errors: PlanError."""
+    """The test motion of `arm`, which its trajectory calls `name`, up to `factor` times its limits. The same for the
+    same arguments. reach: (n_joints, 2) where its servos get to. Errors: PlanError."""
     room = room_of(arm, reach)
     parts = [room.pose[None]]
     steps: list[Step] = []
@@ -176,9 +177,9 @@ def _slowly(arm: Arm, joint: int, start: float, goal: float, rate_hz: float) -> 
 
 
 def _beyond(arm: Arm, positions: FloatArray, rate_hz: float) -> float:
-    """How many times its limits the motion goes to, rounded up."""
+    """How many times its limits the motion goes to, rounded up; 1 where it keeps to them."""
     shares = [
         np.abs(np.diff(positions, order, axis=0)).max(axis=0) * rate_hz**order / limit
         for order, limit in ((1, arm.max_velocity), (2, arm.max_acceleration), (3, arm.max_jerk))
     ]
-    return float(np.ceil(100 * np.max(shares)) / 100)
+    return max(float(np.ceil(100 * np.max(shares) - 1e-6) / 100), 1.0)

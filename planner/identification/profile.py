@@ -71,8 +71,8 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """From rest to rest: jerk, in rad or mm and seconds, for `climb_s`, the acceleration kept for `held_s`, and the speed
-    for `cruise_s`."""
+    """From rest to rest: jerk, in rad or mm and seconds, for `climb_s`, the acceleration kept for `held_s`, and the
+    speed for `cruise_s`."""
 
     jerk: float
     climb_s: float

@@ -10,9 +10,9 @@ shorter ways are than told. h is fitted by least squares, to the measured positi
 out. What the gentler steps tell of h foretells the next step.
 
 A servo that is limited to a little less than a step asks for goes the same way and arrives later: u becomes u + a d,
-where d is the difference that a limit lower by `BY` makes, and a is 0 where the step is followed and 1 where the limit is
-so much lower. a is fitted to each step, there and back apart: gravity helps one of them. Where its standard error is not
-small beside 1, a step tells nothing.
+where d is the difference that a limit lower by `BY` makes, and a is 0 where the step is followed and 1 where the limit
+is so much lower. a is fitted to each step, there and back apart: gravity helps one of them. Where its standard error is
+not small beside 1, a step tells nothing. A servo that is limited in another way shows by what h leaves unexplained.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ _RESTED = 0.3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Trial:
-    """One step: what a joint was told, (n,) at a rate, from rest on; limited: (n,) what it would be told by one that has
-    1 / BY of what is tried; and what was measured, (k,) times and positions; rad or mm, times in s from the first sample
-    told. n_way: samples of each way with its rest, there and back by turns; n_rest: of the rest."""
+    """One step: what a joint was told, (n,) at a rate, from rest on; limited: (n,) what it would be told by one that
+    has 1 / BY of what is tried; and what was measured, (k,) times and positions; rad or mm, times in s from the first
+    sample told. n_way: samples of each way with its rest, there and back by turns; n_rest: of the rest."""
 
     told: FloatArray
     limited: FloatArray
@@ -99,12 +99,12 @@ def followings(ladders: Sequence[Sequence[Trial]], rate_hz: float) -> list[Follo
     play = float(np.median([trial.play(rate_hz) for trial in gentle]))
     systems = [[_System(trial, rate_hz, play) for trial in ladder] for ladder in ladders]
     first = [system for ladder in systems for system in ladder[:GENTLE]]
-    weights: FloatArray | None = None
-    for _ in range(_ROUNDS):
-        rule = _Rule(weights)
+    rule = _Rule()
+    for again in range(_ROUNDS):
+        rule = _Rule(rule.weights) if again else rule
         for system in first:
             rule.take(system)
-        weights = rule.weights
+    weights = rule.weights
     rough = float(np.sqrt(np.mean([system.judged(weights).off ** 2 for system in first])))
     return [_following(ladder, rule, rough) for ladder in systems]
 
@@ -221,7 +221,7 @@ class _Rule:
     """h by least squares, with a sum of 1, of the steps that it takes."""
 
     def __init__(self, before: FloatArray | None = None) -> None:
-        """before: weights by which the effect of the play is taken out of steps; None: the servo is where it is told."""
+        """before: weights by which the effect of the play is taken out of steps; None: it is where it is told."""
         self._before = before
         self._squares, self._products = np.zeros((_N_WEIGHTS, _N_WEIGHTS)), np.zeros(_N_WEIGHTS)
         self._of_values, self._number = 0.0, 0

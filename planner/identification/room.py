@@ -23,7 +23,7 @@ _TRIED = 2 / 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Room:
-    """pose: (n_joints,) where all joints wait. low, high: (n_joints,) between which each is tried while the others wait."""
+    """pose: (n_joints,) where all joints wait. low, high: (n_joints,) between which each is tried while they do."""
 
     pose: FloatArray
     low: FloatArray
