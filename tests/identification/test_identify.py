@@ -85,9 +85,8 @@ def reported(motion: LadderMotion, joint: int, servo: LimitedServo, random: np.r
     return Measured(np.concatenate(times_s), np.radians(table))
 
 
-def found_of(
-    motion: LadderMotion, arm: Arm, joint: int, servo: LimitedServo, random: np.random.Generator
-) -> list[Found]:
+def found_of(arm: Arm, joint: int, servo: LimitedServo, random: np.random.Generator) -> list[Found]:
+    motion = planned(arm)
     return found_by_positions(arm, motion, reported(motion, joint, servo, random), "measured.csv", [joint])
 
 
@@ -226,7 +225,7 @@ def test_limits_are_found_within_fifteen_per_cent_whatever_the_file_says(by: flo
     """A few test motions, each with the file that the one before wrote."""
     arm, joint, random = scaled(load_arm("so101"), by), 0, np.random.default_rng(1)
     servo = replace(any_servo(random, 190.0, 900.0, 21000.0), lag_s=0.02)
-    for _ in range(6):
+    for _ in range(8):
         found = found_of(arm, joint, servo, random)
         again = may_tell_more(arm, found)
         arm = with_limits(arm, found)
