@@ -35,6 +35,9 @@ _WHOLE = 1e6
 _ROUNDS = 3
 _IN_A_ROW = 3
 """So many steps have to be strange; noise makes one so, now and then."""
+_GROWN, _AT_ONCE = 2.0, 6
+"""So many times the usual error is reached by them where a limit is the reason, and after so many steps at most: from
+there on errors grow fast. What was strange before that is only doubtful."""
 _APART = 4
 """So many steps before the one in question are not asked what it should be like: the first that is not followed
 differs by little, and would be taken for the rule."""
@@ -119,8 +122,8 @@ def _following(ladder: Sequence[_System], gentle: _Rule, rough: float) -> Follow
         judged = system.judged(rule.weights)
         if number > GENTLE and judged.is_strange(usual[-_RECENT:], rough):
             strange += 1
-            if strange == _IN_A_ROW:
-                return Following(followed, number - _IN_A_ROW + 1, rule.weights)
+            if strange >= _IN_A_ROW and judged.error > _GROWN * np.median([one.error for one in usual[-_RECENT:]]):
+                return Following(followed, number - min(strange, _AT_ONCE) + 1, rule.weights)
             continue
         strange = 0
         usual.append(judged)
