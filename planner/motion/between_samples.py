@@ -67,16 +67,17 @@ def stroke_excess(
     motion: StrokeMotions,
     samples: Sequence[FloatArray],
     tolerance_mm: float,
+    late: float = 0.0,
 ) -> FloatArray:
     """(total steps,) by how much the tip strays from its stroke in each step, or the stroke from the tip, 1 where it is
     just allowed.
 
-    samples: those of the motion. How far the tip strays from the path grows with the square of the speed, and so does
+    samples: those of the motion, so late. How far the tip strays from the path grows with the square of the speed, and so does
     this figure; the path itself may be off the stroke.
     """
     tips, n_steps = tips_between(kinematics, samples)
     at_samples = kinematics.tip_mm(kinematics.independent_of(np.concatenate(samples)))[:, :2]
-    cells, fractions = motion.places(_PER_STEP)
+    cells, fractions = motion.places(_PER_STEP, late)
     arc_mm = paths.arcs.at(cells, fractions)[:, 0]
     room_mm = STROKE_SHARE * tolerance_mm
     curves = [
@@ -91,6 +92,8 @@ def stroke_excess(
         left_mm = np.maximum(room_mm - at_rest, _LEAST_ROOM * room_mm)
         excess[over] = np.maximum((deviation - at_rest) / left_mm, 1.0 + 1e-6)[over]
     excess = np.maximum(excess, np.abs(tips[..., 2]).max(axis=1) / (HEIGHT_SHARE * tolerance_mm))
+    if late:
+        return excess
     # The first step and the last grow with the cube of the speed.
     ends = starts_of(n_steps + 1)
     into = np.hypot(*(at_samples[ends[:-1] + 1] - at_samples[ends[:-1]]).T)

@@ -24,9 +24,13 @@ from planner.timing.path_timing import minimum_time
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
 _ROUNDS = 16
-_MARGIN = 0.97
-_SLIGHTLY = 1.2
-"""Where a stroke strays by no more, all of it is slowed: to time it anew would save less than that takes."""
+_MARGIN, _MARGIN_THERE = 0.97, 0.94
+"""What is aimed at, of what is allowed, where all of a stroke is slowed, and where some places are."""
+_FEW_PERIODS = 2.0
+"""Where no more is lost, all of a stroke is slowed: to time it anew would save less than that takes."""
+_LATE = (0.0, 0.25, 0.5, 0.75)
+"""Shares of a period by which samples may come later once a stroke is timed anew: what slows one place moves all that
+follows, so each place is slowed for the samples that are worst for it. On a long stroke there would be no end."""
 _SLOWEST = 0.5
 """Least factor that a round slows by: figures far above what is allowed follow no power of the speed."""
 
@@ -60,7 +64,8 @@ def timed_within(
         timing = minimum_time(problem)
         tried = _tried(kinematics, limits, paths, splines, timing.rates, tolerance_mm, rate_hz)
         samples, over = tried.samples, tried.worst > 1.0
-        slightly = over & (tried.worst <= _SLIGHTLY)
+        costs = tried.motion.n_periods * (np.sqrt(np.maximum(tried.worst, _MARGIN) / _MARGIN) - 1.0)
+        slightly = over & (costs <= _FEW_PERIODS)
         if slightly.any():
             slower = np.repeat(_MARGIN / tried.worst, splines.n_cells)[:, None] * timing.rates
             cells = np.repeat(slightly, splines.n_cells)
@@ -72,9 +77,12 @@ def timed_within(
         timed.update(zip(left.tolist(), map(Timed, samples, timing.converged.tolist(), (~over).tolist()), strict=True))
         if not over.any():
             break
-        cap = _slower_where(tried.motion, tried.excess, int(around))
-        problem = replace(problem, rate_limit=np.minimum(problem.rate_limit, cap)).subset(over)
-        paths, splines, left = paths.subset(over), splines.subset(over), left[over]
+        problem, paths, splines, left = problem.subset(over), paths.subset(over), splines.subset(over), left[over]
+        motion, cap = tried.motion.subset(over), problem.rate_limit
+        for late in _LATE:
+            excess = stroke_excess(kinematics, paths, motion, motion.samples(late), tolerance_mm, late)
+            cap = np.minimum(cap, _slower_where(motion, excess, int(around), late))
+        problem = replace(problem, rate_limit=cap)
     return [timed[index] for index in sorted(timed)]
 
 
@@ -104,11 +112,11 @@ def _tried(
     return _Tried(motion, samples, excess, np.maximum.reduceat(excess, starts_of(motion.n_periods)[:-1]))
 
 
-def _slower_where(motion: StrokeMotions, excess: FloatArray, around: int) -> FloatArray:
+def _slower_where(motion: StrokeMotions, excess: FloatArray, around: int, late: float) -> FloatArray:
     """(total cells,) caps on dsigma/dt below the motion's own in the cells of each step (total steps,) with an excess,
     and of so many steps before and behind; inf elsewhere."""
-    n_cells, n_steps = motion.paths.n_cells, motion.n_periods
-    cells, _ = motion.places()  # one more than steps for each path
+    n_cells, n_steps = motion.paths.n_cells, motion.steps(late)
+    cells, _ = motion.places(1, late)  # one more than steps for each path
     first = np.repeat(starts_of(n_steps + 1)[:-1], n_steps)
     step = within(n_steps)
     begin = cells[first + np.maximum(step - around, 0)]
@@ -117,7 +125,7 @@ def _slower_where(motion: StrokeMotions, excess: FloatArray, around: int) -> Flo
     fastest = np.sqrt(rate.max(axis=1))
     cap = np.full(int(n_cells.sum()), np.inf)
     for at in np.flatnonzero(excess > 1.0).tolist():
-        slower = max(_MARGIN / np.sqrt(excess[at]), _SLOWEST)
+        slower = max(_MARGIN_THERE / np.sqrt(excess[at]), _SLOWEST)
         cap[begin[at] : end[at] + 1] = np.minimum(
             cap[begin[at] : end[at] + 1], slower * fastest[begin[at] : end[at] + 1]
         )

@@ -30,9 +30,10 @@ from planner.timing.timing_problem import FRACTIONS
 TIMING_SUBDIVISIONS = 1
 """How often the cells of a path are cut in two before it is timed: jerk switches at cell ends only, and cells as
 long as the corners that they go round are too coarse for that."""
-_CHANCE = 1.06
-"""How much further chords may cut than is allowed, where caps foresee it: few have their middle where they would cut
-most. Those that have are found, and slowed, afterwards."""
+_CHANCE, _CHANCE_CELLS = 0.06, 100
+"""How much further chords may cut than is allowed, where caps foresee it, on paths of up to so many cells; the longer a
+path, the less. Few chords have their middle where they would cut most: a short path hardly has one, and is timed anew
+if it has. A long one has some for sure."""
 _FEW = 4
 """Configurations by which the arm's quickness is judged."""
 
@@ -100,7 +101,8 @@ def pen_speed_limit(
     """(total cells, n_fractions) cap on dsigma/dt at FRACTIONS of every cell: the pen's own speed, and what keeps it
     near its stroke between samples."""
     speed_mm_s = pen_speed_mm_s(kinematics.arm, settings)
-    error_mm = _CHANCE * STROKE_SHARE * settings.tolerance_mm
+    chance = 1.0 + _CHANCE * np.minimum(1.0, _CHANCE_CELLS / paths.pen.n_cells)
+    error_mm = chance * STROKE_SHARE * settings.tolerance_mm
     chords = rate_limit(paths, FRACTIONS, speed_mm_s, error_mm, settings.rate_hz)
     bulges = chord_error_limit(kinematics, splines, CHORD_SHARE * settings.tolerance_mm, settings.rate_hz)
     return np.minimum(chords, bulges[:, None])

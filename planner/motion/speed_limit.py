@@ -29,9 +29,9 @@ def pen_speed_mm_s(arm: Arm, settings: PlanSettings) -> float:
 
 
 def rate_limit(
-    paths: StrokePaths, fractions: FloatArray, speed_mm_s: float, error_mm: float, rate_hz: float
+    paths: StrokePaths, fractions: FloatArray, speed_mm_s: float, error_mm: FloatArray, rate_hz: float
 ) -> FloatArray:
-    """(total cells, n_fractions) cap on dsigma/dt at fractions of every cell.
+    """(total cells, n_fractions) cap on dsigma/dt at fractions of every cell; error_mm: (n_paths,).
 
     Controllers join samples by straight lines. A line that spans a length l of path passes its middle by the chord from
     l/2 before to l/2 behind; so within l/2 of a point whose place on the stroke that chord would miss by more than the
@@ -45,7 +45,7 @@ def rate_limit(
     return cap
 
 
-def _chord_speeds(paths: StrokePaths, speed_mm_s: float, error_mm: float, rate_hz: float) -> FloatArray:
+def _chord_speeds(paths: StrokePaths, speed_mm_s: float, error_mm: FloatArray, rate_hz: float) -> FloatArray:
     """(total cells, _PARTS + 1) the speeds that chords allow at the ends of the parts of every cell."""
     n_cells, ends = paths.pen.n_cells, paths.pen.positions(np.linspace(0.0, 1.0, _PARTS + 1))
     steps = np.hypot(*np.moveaxis(np.diff(ends, axis=1), 2, 0)).ravel()
@@ -55,7 +55,8 @@ def _chord_speeds(paths: StrokePaths, speed_mm_s: float, error_mm: float, rate_h
     last = first + n_parts - 1
     points = np.insert(ends[:, :-1].reshape(-1, 2), last + 1, ends[np.cumsum(n_cells) - 1, -1], axis=0)
     wanted = _places_on_strokes(paths, points)
-    error_by_point = np.maximum(error_mm, np.hypot(*(points - wanted).T) + _LEAST_ROOM * error_mm)
+    error_by_point = np.repeat(error_mm, n_parts + 1)
+    error_by_point = np.maximum(error_by_point, np.hypot(*(points - wanted).T) + _LEAST_ROOM * error_by_point)
     steps = np.insert(steps, last + 1, _GAP_MM)
     along = np.concatenate(([0.0], np.cumsum(steps)[:-1]))
     is_left = np.ones(len(points), dtype=bool)
@@ -64,7 +65,7 @@ def _chord_speeds(paths: StrokePaths, speed_mm_s: float, error_mm: float, rate_h
     end = np.repeat(along[last + 1 + np.arange(len(last))], n_parts + 1)
     allowed = np.full(len(points), speed_mm_s)
     open_points = np.arange(len(points))  # where the chord of the speed at hand still cuts too much
-    slowest = min(_SHORTEST * 2 * error_mm * rate_hz, speed_mm_s)
+    slowest = min(_SHORTEST * 2 * float(error_mm.min()) * rate_hz, speed_mm_s)
     speed = speed_mm_s
     while len(open_points) and speed > slowest:
         half = 0.5 * speed / rate_hz

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from planner.arrays import FloatArray, IntArray
+from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.inverse_kinematics.joint_path import JointPaths
 from planner.kinematics.limits import Limits
 from planner.ragged import starts_of, within
@@ -44,21 +44,29 @@ class StrokeMotions:
     cell_s: FloatArray
     n_periods: IntArray
 
-    def samples(self) -> list[FloatArray]:
-        """(n_periods + 1, n_joints) positions of each stroke at its samples, both ends included."""
-        return np.split(self.paths.at(*self.places()), np.cumsum(self.n_periods + 1)[:-1])
+    def steps(self, late: float = 0.0) -> IntArray:
+        """(n_paths,) steps from sample to sample of each stroke, with samples so late."""
+        return self.n_periods + (late > 0.0)
 
-    def places(self, per_period: int = 1) -> tuple[IntArray, FloatArray]:
-        """Cells, and fractions of them, (n,) in which all strokes are at so many equal steps a period, both ends of
-        each included."""
+    def samples(self, late: float = 0.0) -> list[FloatArray]:
+        """(steps + 1, n_joints) positions of each stroke at its samples, both ends included. With late, a share of a
+        period, all samples but the ends are so much later: what they would be had the stroke begun a little before."""
+        return np.split(self.paths.at(*self.places(1, late)), np.cumsum(self.steps(late) + 1)[:-1])
+
+    def places(self, per_step: int = 1, late: float = 0.0) -> tuple[IntArray, FloatArray]:
+        """Cells, and fractions of them, (n,) in which all strokes are at so many equal parts of a step from sample to
+        sample, both ends of each included."""
         starts = starts_of(self.paths.n_cells)
-        n_steps = per_period * self.n_periods
-        counts = n_steps + 1
+        counts = per_step * self.steps(late) + 1
         after = np.cumsum(self.cell_s)  # on one axis of time, stroke after stroke
         begins = after - self.cell_s
         begins_s, ends_s = begins[starts[:-1]], after[starts[1:] - 1]
         number = within(counts)
-        times = np.repeat(begins_s, counts) + number * np.repeat((ends_s - begins_s) / n_steps, counts)
+        periods = np.maximum(number / per_step - (1.0 - late if late else 0.0), 0.0)
+        period_s = (ends_s - begins_s) / self.n_periods
+        times = np.minimum(
+            np.repeat(begins_s, counts) + periods * np.repeat(period_s, counts), np.repeat(ends_s, counts)
+        )
         cell = np.clip(
             np.searchsorted(begins, times, side="right") - 1,
             np.repeat(starts[:-1], counts),
@@ -66,8 +74,15 @@ class StrokeMotions:
         )
         fraction = _fraction_after(self.rates[cell], times - begins[cell], self.cell_s[cell])
         fraction[number == 0] = 0.0
-        fraction[number == np.repeat(n_steps, counts)] = 1.0
+        fraction[number == np.repeat(counts - 1, counts)] = 1.0
         return cell, fraction
+
+    def subset(self, chosen: BoolArray) -> StrokeMotions:
+        """Only the strokes of the mask (n_paths,)."""
+        cells = np.repeat(chosen, self.paths.n_cells)
+        return StrokeMotions(
+            self.paths.subset(chosen), self.rate_hz, self.rates[cells], self.cell_s[cells], self.n_periods[chosen]
+        )
 
 
 def motions(paths: JointPaths, rates: FloatArray, limits: Limits, rate_hz: float) -> StrokeMotions:
