@@ -72,8 +72,8 @@ def stroke_excess(
     """(total steps,) by how much the tip strays from its stroke in each step, or the stroke from the tip, 1 where it is
     just allowed.
 
-    samples: those of the motion, so late. How far the tip strays from the path grows with the square of the speed, and so does
-    this figure; the path itself may be off the stroke.
+    samples: those of the motion, so late. How far the tip strays from the path grows with the square of the speed, and
+    so does this figure; the path itself may be off the stroke.
     """
     tips, n_steps = tips_between(kinematics, samples)
     at_samples = kinematics.tip_mm(kinematics.independent_of(np.concatenate(samples)))[:, :2]

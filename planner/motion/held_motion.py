@@ -26,11 +26,13 @@ from planner.timing.timing_problem import FRACTIONS, TimingProblem
 _ROUNDS = 16
 _MARGIN, _MARGIN_THERE = 0.97, 0.94
 """What is aimed at, of what is allowed, where all of a stroke is slowed, and where some places are."""
-_FEW_PERIODS = 2.0
+_FEW_PERIODS = 0.5
 """Where no more is lost, all of a stroke is slowed: to time it anew would save less than that takes."""
 _LATE = (0.0, 0.25, 0.5, 0.75)
-"""Shares of a period by which samples may come later once a stroke is timed anew: what slows one place moves all that
-follows, so each place is slowed for the samples that are worst for it. On a long stroke there would be no end."""
+_MANY_PERIODS = 300
+"""Shares of a period by which samples may come later: what slows one place moves all samples behind it. So a stroke
+that is timed anew more than once, or lasts longer, is slowed at each place for the samples that are worst there: there
+would be no end otherwise."""
 _SLOWEST = 0.5
 """Least factor that a round slows by: figures far above what is allowed follow no power of the speed."""
 
@@ -78,11 +80,8 @@ def timed_within(
         if not over.any():
             break
         problem, paths, splines, left = problem.subset(over), paths.subset(over), splines.subset(over), left[over]
-        motion, cap = tried.motion.subset(over), problem.rate_limit
-        for late in _LATE:
-            excess = stroke_excess(kinematics, paths, motion, motion.samples(late), tolerance_mm, late)
-            cap = np.minimum(cap, _slower_where(motion, excess, int(around), late))
-        problem = replace(problem, rate_limit=cap)
+        cap = _cap_where_over(kinematics, paths, tried.motion.subset(over), tolerance_mm, int(around))
+        problem = replace(problem, rate_limit=np.minimum(problem.rate_limit, cap))
     return [timed[index] for index in sorted(timed)]
 
 
@@ -110,6 +109,21 @@ def _tried(
     samples = motion.samples()
     excess = stroke_excess(kinematics, paths, motion, samples, tolerance_mm)
     return _Tried(motion, samples, excess, np.maximum.reduceat(excess, starts_of(motion.n_periods)[:-1]))
+
+
+def _cap_where_over(
+    kinematics: Kinematics, paths: StrokePaths, motion: StrokeMotions, tolerance_mm: float, around: int
+) -> FloatArray:
+    """(total cells,) caps on dsigma/dt, inf where the tip does not stray too far, whenever the samples are."""
+    cap = np.full(int(paths.pen.n_cells.sum()), np.inf)
+    for late in _LATE:
+        chosen = (motion.n_periods > _MANY_PERIODS) | (around > 1 or late == 0.0)
+        if chosen.any():
+            some, of = motion.subset(chosen), paths.subset(chosen)
+            excess = stroke_excess(kinematics, of, some, some.samples(late), tolerance_mm, late)
+            cells = np.repeat(chosen, paths.pen.n_cells)
+            cap[cells] = np.minimum(cap[cells], _slower_where(some, excess, around, late))
+    return cap
 
 
 def _slower_where(motion: StrokeMotions, excess: FloatArray, around: int, late: float) -> FloatArray:

@@ -30,7 +30,7 @@ from planner.timing.timing_problem import FRACTIONS
 TIMING_SUBDIVISIONS = 1
 """How often the cells of a path are cut in two before it is timed: jerk switches at cell ends only, and cells as
 long as the corners that they go round are too coarse for that."""
-_CHANCE, _CHANCE_CELLS = 0.06, 100
+_CHANCE, _CHANCE_CELLS = 0.06, 300
 """How much further chords may cut than is allowed, where caps foresee it, on paths of up to so many cells; the longer a
 path, the less. Few chords have their middle where they would cut most: a short path hardly has one, and is timed anew
 if it has. A long one has some for sure."""

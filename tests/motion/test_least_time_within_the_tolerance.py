@@ -85,6 +85,18 @@ def test_points_and_noise_below_the_tolerance_cost_no_time(points: int, noise_mm
 
 
 @pytest.mark.parametrize("rate_hz", [50.0, 100.0, 250.0])
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_long_stroke_takes_no_longer_than_its_pieces_from_rest_to_rest(rate_hz: float, seed: int) -> None:
+    """Of its many corners some fall badly between the samples: those are to be slow, and not all of the stroke."""
+    headings = np.cumsum(np.random.default_rng(seed).uniform(-1.2, 1.2, 400))
+    walk = np.cumsum(0.3 * np.column_stack((np.cos(headings), np.sin(headings))), axis=0)
+    stroke = walk - walk.mean(axis=0) + [75.0, 0.0]
+    whole, *pieces = drawn(context_of(0.05, rate_hz), [stroke, *(stroke[k : k + 21] for k in range(0, 399, 20))])
+    assert len(pieces) == 20 and whole.held
+    assert len(whole.joints) - 1 <= 1.02 * sum(len(piece.joints) - 1 for piece in pieces)
+
+
+@pytest.mark.parametrize("rate_hz", [50.0, 100.0, 250.0])
 def test_chords_between_samples_and_stroke_are_within_the_tolerance_and_use_it(rate_hz: float) -> None:
     """By Shapely, both ways, with the exact arm. Some of the strokes use nearly all there is."""
     random = np.random.default_rng(5)

@@ -23,7 +23,7 @@ limit holds for as much of the path as a sample period spans."""
 
 def speeds_mm_s(paths: StrokePaths, fractions: FloatArray) -> FloatArray:
     """(total cells, n_fractions) the limit as a speed of the pen."""
-    limit = rate_limit(paths, fractions, _SPEED_MM_S, _ERROR_MM, _RATE_HZ)
+    limit = rate_limit(paths, fractions, _SPEED_MM_S, np.full(len(paths.pen.n_cells), _ERROR_MM), _RATE_HZ)
     slope = paths.pen.positions(fractions, 1)
     return limit * np.hypot(slope[..., 0], slope[..., 1])
 
@@ -40,7 +40,7 @@ def longest_cut(turns: FloatArray, lengths: FloatArray) -> float:
     corners = np.cumsum(lengths[:, None] * np.column_stack((np.cos(heading), np.sin(heading))), axis=0)
     stroke = np.vstack(([0.0, 0.0], corners))
     paths = smoothed([stroke], _PATH_MM)
-    cap = rate_limit(paths, np.zeros(1), _SPEED_MM_S, _ERROR_MM, _RATE_HZ)[:, 0]
+    cap = rate_limit(paths, np.zeros(1), _SPEED_MM_S, np.full(len(paths.pen.n_cells), _ERROR_MM), _RATE_HZ)[:, 0]
     slope = np.hypot(*paths.pen.positions(np.zeros(1), 1)[:, 0].T)
     way = paths.pen.positions(np.linspace(0, 1, _FINE, endpoint=False)).reshape(-1, 2)
     along_mm = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))))
