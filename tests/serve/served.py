@@ -23,6 +23,7 @@ class Server:
     """`plan serve` on a free port, with a folder of its own."""
 
     def __init__(self, folder: Path, *options: str) -> None:
+        self.folder = folder
         self.process = subprocess.Popen(
             [sys.executable, "-m", "planner", "serve", "--port", "0", "--folder", str(folder), *options],
             stdout=subprocess.PIPE,
@@ -77,6 +78,10 @@ class Server:
         )
         assert status == 201, body
         return self.settled(json.loads(body)["id"])
+
+    def remove(self, key: str) -> None:
+        status, _, body = self.answer("DELETE", f"/api/jobs/{key}", None, {"Content-Type": "application/json"})
+        assert status == 200, body
 
     def job(self, key: str) -> dict[str, Any]:
         return next(job for job in self.get("/api/state")["jobs"] if job["id"] == key)
