@@ -12,8 +12,11 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import pytest
-from mcp import ClientSession, StdioServerParameters, stdio_client
+from mcp import Client, ClientSession, StdioServerParameters, stdio_client
 
+from planner.serve import arms
+from planner.serve.agent import agent_server
+from planner.serve.house import House
 from tests.hardware.controllers.lines import pty_line
 from tests.hardware.controllers.maestro import MaestroModel
 from tests.serve.served import SQUARE
@@ -34,8 +37,6 @@ async def _draws(folder: Path) -> None:
         assert {tool.name for tool in (await session.list_tools()).tools} == {
             "arms", "plan", "picture", "check", "run", "status", "stop",
         }  # fmt: skip
-        assert "so101" in text(await call(session, "arms"))
-
         planned = json.loads(
             text(await call(session, "plan", svg=SQUARE.decode(), options={"rotate": 5, "scale": 0.3}))
         )
@@ -64,6 +65,22 @@ async def _draws(folder: Path) -> None:
 
 def test_an_agent_plans_looks_checks_and_runs_on_the_simulated_arm_alone(tmp_path: Path) -> None:
     asyncio.run(asyncio.wait_for(_draws(tmp_path), 240))
+
+
+async def _lists_arms(house: House) -> Any:
+    async with Client(agent_server(house, real_arm=False)) as client:
+        return [json.loads(part.text) for part in (await client.call_tool("arms")).content if part.type == "text"]
+
+
+def test_an_agent_is_told_of_every_arm_with_the_room_it_draws_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of two of them: each is worked out for it."""
+    names = ("drawing_arm", "so101")
+    monkeypatch.setattr(arms, "known_arms", lambda: names)
+    found = asyncio.run(asyncio.wait_for(_lists_arms(House(tmp_path)), 240))
+    assert [arm["name"] for arm in found] == list(names)
+    assert all(20 < arm[side] < 1000 for arm in found for side in ("width_mm", "height_mm"))
 
 
 async def _asks_for_a_real_arm(folder: Path, port: str, terminal: int, errlog: TextIO) -> list[Any]:

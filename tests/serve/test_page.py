@@ -352,9 +352,10 @@ def test_the_paper_stands_on_the_floor_as_in_the_world(page: Page, server: Serve
         if tilt == -180
         else (PaperPose(190.0, 0.0, 80.0, tilt_y_rad=radians(tilt)) if tilt else PaperPose())
     )
-    arm = replace(load_arm("six_joint"), name=f"tilted{-tilt:.0f}", paper=paper)
+    arm = replace(load_arm("six_joint"), name=f"tilted{abs(tilt):.0f}", paper=paper)
     (server.folder / "arms" / f"{arm.name}.toml").write_text(arm_toml(arm), encoding="utf-8")
     job = server.planned(arm=arm.name)
+    assert job["state"] == "planned", job["error"]
     seen = page.evaluate(STANDS, job["id"])
     server.remove(job["id"])  # pages show the newest
     assert seen["normal"] == pytest.approx(paper.normal.tolist(), abs=1e-6)
