@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 import tempfile
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -24,7 +26,10 @@ def pytest_sessionstart() -> Iterator[None]:
     """All processes of a session share what they compute of arms, and nothing with other sessions."""
     if "PYTEST_XDIST_WORKER" not in os.environ:
         os.environ[FOLDER_VARIABLE] = tempfile.mkdtemp(prefix="kept-")
-    return (yield)
+    yield
+    if sys.dont_write_bytecode:  # not beside the sources: else hundreds of short processes compile all of them anew
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+        os.environ["PYTHONPYCACHEPREFIX"] = str(Path(os.environ[FOLDER_VARIABLE], "bytecode"))
 
 
 def pytest_sessionfinish() -> None:

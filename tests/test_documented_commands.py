@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
+import os
 import re
 import shlex
 import shutil
+from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
 
@@ -51,12 +54,32 @@ def written_by(words: list[str]) -> list[Path]:
     ]
 
 
-_planned: dict[tuple[str, ...], dict[Path, bytes]] = {}
-"""What plans have written in this process, by their words: one that several pages begin with is made once."""
+@pytest.fixture(scope="module")
+def planned(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where all processes of a session find what plans have written: one that several pages begin with is made once."""
+    folder = tmp_path_factory.getbasetemp()
+    return (folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder) / "documented"
+
+
+def kept(planned: Path, words: list[str]) -> Path:
+    """The folder of what a plan has written, by its words."""
+    return planned / hashlib.sha256(shlex.join(words).encode()).hexdigest()
+
+
+def keep(results: list[Path], folder: Path) -> None:
+    """Whole, or not at all: others look for it meanwhile."""
+    aside = folder.with_name(f"{folder.name}-{os.getpid()}")
+    for path in results:
+        (aside / path).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, aside / path)
+    with suppress(OSError):  # another process was first
+        aside.rename(folder)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_commands_of_a_page_do_what_it_says(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_commands_of_a_page_do_what_it_says(
+    page: Path, planned: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
     for words in commands_of(page):
@@ -64,16 +87,16 @@ def test_commands_of_a_page_do_what_it_says(page: Path, tmp_path: Path, monkeypa
         told = f"{page.name}: {shlex.join(command)}"
         assert command[0] == "plan", f"{told} is to be marked with '{NOT_RUN} why -->'"
         results = written_by(command)
-        for path, content in _planned.get(tuple(command), {}).items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
-        if tuple(command) not in _planned:
-            for path in results:
-                if path.is_file():
-                    path.unlink()
+        folder = kept(planned, command)
+        for path in results:
+            if path.is_file():
+                path.unlink()
+        if folder.exists():
+            shutil.copytree(folder, Path(), dirs_exist_ok=True)
+        else:
             assert main(command[1:]) == 0, told
             if command[1].endswith(".svg"):
-                _planned[tuple(command)] = {path: path.read_bytes() for path in results}
+                keep(results, folder)
         for path in results:
             assert path.is_dir() or path.stat().st_size > 0, f"{told}: {path}"
 
