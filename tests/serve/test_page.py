@@ -161,6 +161,18 @@ def test_from_a_dropped_drawing_to_a_drawn_one(page: Page, server: Server) -> No
     expect(page.locator("#standing")).to_contain_text("played")
 
 
+def test_a_drawing_that_comes_before_the_server_has_answered_waits_for_it(page: Page) -> None:
+    late: list[Route] = []
+    page.route("**/api/events", lambda route: late.append(route))
+    page.reload()
+    page.set_input_files("#file", {"name": "early.svg", "mimeType": "image/svg+xml", "buffer": SQUARE})
+    settle(page)
+    for route in late:
+        route.continue_()
+    expect(page.locator("#jobs .job").first).to_contain_text("early.svg")
+    expect(page.locator("#sheet-says")).to_contain_text("mm")
+
+
 def test_a_drawing_is_moved_sized_and_turned_by_hand_and_lands_there(page: Page, server: Server) -> None:
     give(page)
     box = page.locator("#sheet").bounding_box()

@@ -418,7 +418,8 @@ const wish = (name) => tried($("run-says"), () => post(`/api/run/${name}`));
 // -- everything together --------------------------------------------------------------------------------------------
 
 let [drivers, simulators] = [[], []];
-let started = null; // what the server knows is here
+let connected;
+let started = new Promise((done) => (connected = done)); // what the server knows is here
 
 /** One may have been saved anew under its name. */
 function armsChanged(names) {
@@ -560,6 +561,7 @@ watch(parts, {
   onConnected: () => {
     $("lost").hidden = true;
     started = start().catch((error) => say($("plan-says"), error.message, "bad"));
+    connected(started);
   },
   onLost: () => ($("lost").hidden = false),
 });
