@@ -15,15 +15,26 @@ from planner.arms.arm_file import load_arm
 from planner.as_servos_see import cut_corners_mm, samples_a_set_point
 from planner.cli import main
 from planner.trajectory import Trajectory
+from tests.drawn_shapes import lines_svg
 
-SPIROGRAPH = Path(__file__).parents[1] / "examples" / "spirograph.svg"
+_TURNS = np.linspace(0.0, 6.0 * np.pi, 200)
+_FLOWER = 30.0 + 14.0 * np.column_stack(
+    (np.cos(_TURNS) + np.cos(11.0 / 3.0 * _TURNS), np.sin(_TURNS) - np.sin(11.0 / 3.0 * _TURNS))
+)
+CURVES = lines_svg(
+    f'<path d="M{" L".join(f"{x:.2f} {y:.2f}" for x, y in _FLOWER.tolist())} Z"/><circle cx="30" cy="30" r="9"/>'
+    '<path d="M2 58 q4 -8 8 0 t8 0 t8 0"/><path d="M40 58 L50 50 L58 58"/>',
+    'viewBox="0 0 60 60"',
+)
+"""Smooth ones, which are drawn fast, and corners."""
 
 
 @pytest.mark.parametrize("name", ["drawing_arm", "drawing_arm_2022", "so101"])
 def test_what_servos_see_of_a_plan_keeps_its_promise(name: str, tmp_path: Path) -> None:
     """Nobody says a rate: the set points that the servos take, with straight lines between, draw the drawing."""
-    path = tmp_path / "traj.csv"
-    assert main([str(SPIROGRAPH), "--arm", name, "-o", str(path), "--quiet"]) == 0
+    drawing, path = tmp_path / "curves.svg", tmp_path / "traj.csv"
+    drawing.write_text(CURVES)
+    assert main([str(drawing), "--arm", name, "-o", str(path), "--quiet"]) == 0
     trajectory, period_s = Trajectory.load(path), load_arm(name).set_point_period_s
     assert period_s is not None
     every = round(period_s * trajectory.rate_hz)
@@ -35,7 +46,7 @@ def test_what_servos_see_of_a_plan_keeps_its_promise(name: str, tmp_path: Path) 
         stroke=trajectory.stroke[::every],
         decimals=None if trajectory.decimals is None else trajectory.decimals[::every],
     )
-    result = check(seen, SPIROGRAPH)
+    result = check(seen, drawing)
     assert result.passed, str(result)
 
 

@@ -40,7 +40,7 @@ def single(*place_mm: float) -> Targets:
 @pytest.mark.parametrize("name", known_arms())
 def test_all_methods_on_random_targets(name: str) -> None:
     arm = load_once(name)
-    comparison = compared(arm, random_targets(kinematics_of(arm), 20, 3))
+    comparison = compared(arm, random_targets(kinematics_of(arm), 10, 3))
     assert [result.method.name for result in comparison.results] == NAMES
     for result in comparison.results:
         if result.method.name == "closed-form" and arm.closed_form is None:

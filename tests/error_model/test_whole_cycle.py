@@ -133,7 +133,7 @@ def test_photos_of_two_sheets_make_an_arm_draw_whole_lines(
     for k, arm in enumerate(("drawing_arm_2022", "arm1.toml")):
         sheet = Sheet(f"sheet{k}")
         pattern, marks, pdf, pulses, photo, measured_marks = map(sheet.file, FILES)
-        made = ("-o", pattern, "--marks", marks, "--sheet", pdf, "--seed", k, "--quiet")
+        made = ("-o", pattern, "--marks", marks, "--sheet", pdf, "--seed", k, "--count", 30, "--quiet")
         command("pattern", "--arm", arm, *made)
         command("run", pattern, "--arm", arm, "--fast", "--record", pulses, "--quiet")
         if not k:
