@@ -24,6 +24,12 @@ def server(folder: Path) -> Iterator[Server]:
         yield running
 
 
+@pytest.fixture(scope="module")
+def planned(server: Server) -> str:
+    """The key of a drawing that is planned, for another arm than those that are jogged."""
+    return str(server.planned()["id"])
+
+
 def jog(server: Server, stand: str) -> dict[str, Any]:
     return server.until(lambda: server.get("/api/state")["jog"], lambda jog: jog["stand"] == stand)
 
@@ -33,7 +39,7 @@ def do(server: Server, command: str, **more: object) -> dict[str, Any]:
     return jog(server, "ready")
 
 
-def test_what_is_found_becomes_an_arm_that_draws(server: Server, folder: Path) -> None:
+def test_what_is_found_becomes_an_arm_that_draws(server: Server, planned: str, folder: Path) -> None:
     server.post("/api/jog", {"arm": "drawing_arm_2022", "target": "mine"})
     before = jog(server, "ready")
     name, here = before["joints"][1]["name"], before["joints"][1]["at"]
@@ -43,8 +49,7 @@ def test_what_is_found_becomes_an_arm_that_draws(server: Server, folder: Path) -
     asked = {"command": "move", "number": 1, "joint": f"{name}\nsave"}
     assert "no joint" in server.post("/api/jog/do", asked, status=400)["error"]
     assert "drawing" not in server.get("/api/state")["run"]["stand"]
-    job = server.planned()
-    assert "jogged" in server.post(f"/api/jobs/{job['id']}/run", status=400)["error"]
+    assert "jogged" in server.post(f"/api/jobs/{planned}/run", status=400)["error"]
     assert do(server, "save")["saved"]
     server.post("/api/jog/do", {"command": "quit"})
     assert jog(server, "idle")["ended"].startswith("done")
@@ -65,16 +70,15 @@ def test_what_is_found_becomes_an_arm_that_draws(server: Server, folder: Path) -
     assert "holds" in jog(server, "idle")["ended"]
 
 
-def test_a_run_and_jogging_keep_out_of_each_others_way(server: Server) -> None:
-    job = server.planned()
-    server.post(f"/api/jobs/{job['id']}/run")
+def test_a_run_and_jogging_keep_out_of_each_others_way(server: Server, planned: str) -> None:
+    server.post(f"/api/jobs/{planned}/run")
     assert "stop that first" in server.post("/api/jog", {"arm": "so101", "target": "x"}, status=400)["error"]
     server.post("/api/run/hold")
     server.run("idle")
     server.post("/api/jog", {"arm": "so101", "target": "x"})
     server.post("/api/jog/stop")  # before it has even begun
     jog(server, "idle")
-    server.post(f"/api/jobs/{job['id']}/run", {"fast": True})
+    server.post(f"/api/jobs/{planned}/run", {"fast": True})
     assert server.run("idle")["complete"]
 
 
