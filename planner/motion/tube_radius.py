@@ -13,8 +13,10 @@ from planner.kinematics.chain import Kinematics
 
 _CHORDS = 0.25
 """Measured: of J^(2/3) r^(1/3) h^2, what chords take of the room. Too much or too little costs time only."""
-_WIDEST, _NARROWEST = 0.88, 0.4
+_WIDEST, _NARROWEST = 0.93, 0.4
 """Of the room: between the places at which it is bounded a path strays a little further."""
+_SPARED = 0.7
+"""Measured: what wide tubes leave to chords beyond what these take, in shares of that."""
 
 
 def tube_radius(kinematics: Kinematics, configurations: FloatArray, room_mm: float, rate_hz: float) -> float:
@@ -28,7 +30,8 @@ def tube_radius(kinematics: Kinematics, configurations: FloatArray, room_mm: flo
     for _ in range(40):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if middle + chords * np.cbrt(middle) < room_mm else (low, middle)
-    return float(np.clip(low, _NARROWEST * room_mm, _WIDEST * room_mm))
+    widest_mm = _WIDEST * room_mm - _SPARED * (room_mm - low)
+    return max(min(low, widest_mm), _NARROWEST * room_mm)
 
 
 def tip_jerk(kinematics: Kinematics, configurations: FloatArray) -> float:

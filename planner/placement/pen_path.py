@@ -19,7 +19,7 @@ ROUNDED_SHARE = 0.6
 """Share of the tolerance within which corners are rounded first: that fixes how long the cells are."""
 _TUBE_SHARE = 0.85
 """Share of it that a tube takes unless told otherwise: between the bounded points a path strays a little further."""
-_SURPLUS, _MOST = 0.5, 0.97
+_SURPLUS, _MOST = 0.75, 0.97
 """How much of what a tube leaves of the tolerance a path may take between the bounded points, and how much of the
 tolerance at most: where it takes more, the tube is made narrower."""
 _ROUNDS = 3
@@ -80,7 +80,8 @@ def smoothed(polylines: Sequence[FloatArray], tolerance_mm: float, radius_mm: fl
     otherwise: rounds of refinement come to an end.
 
     polylines: each (n >= 2, 2) in mm with distinct neighbours; radius_mm: of the tube that they are to be the smoothest
-    in; they then leave half of what is between it and the tolerance to others. Work is linear in the number of points.
+    in; they then leave a quarter of what is between it and the tolerance to others. Work is linear in the number of
+    points.
     """
     line = Polylines.of(polylines)
     start = rounded(line, ROUNDED_SHARE * tolerance_mm)
