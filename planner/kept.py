@@ -102,15 +102,22 @@ def _modules(folder: str) -> Iterator[str]:
 
 def _version(library: str) -> str:
     """By the folder beside an installed library that is named after it and its version; `importlib.metadata`, which
-    would open that folder, loads a reader of e-mail for it, and is asked where there is none."""
-    spec = find_spec(library)
+    would open that folder, loads a reader of e-mail for it, and is asked where there is none. The small machine at an
+    arm may not have the library at all."""
+    try:
+        spec = find_spec(library)
+    except ModuleNotFoundError:
+        spec = None
     beside = [] if spec is None or spec.origin is None else list(os.scandir(Path(spec.origin).parent.parent))
     told = [one.name for one in beside if one.name.startswith(f"{library}-") and one.name.endswith(".dist-info")]
     if told:
         return " ".join(sorted(told))
-    from importlib.metadata import version
+    from importlib.metadata import PackageNotFoundError, version
 
-    return f"{library} {version(library)}"
+    try:
+        return f"{library} {version(library)}"
+    except PackageNotFoundError:
+        return f"no {library}"
 
 
 def _read(file: Path) -> bytes | None:

@@ -166,7 +166,7 @@ def _along(kinematics: Kinematics, limits: Limits, rules: TravelRules, shapes: S
         made = _made(kinematics, limits, rules, [tried[k] for k in quick], sooner_s[quick])
         for index, move in zip(one[quick].tolist(), made, strict=True):
             moves[index] = min(moves[index], move, key=_preferred)
-        slow = np.unique(one[quick])
+        slow = np.array(sorted(set(one[quick].tolist())), dtype=np.int64)
     return moves
 
 
