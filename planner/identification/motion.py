@@ -2,9 +2,9 @@
 
 Three ladders a joint, in velocity, in acceleration, and in jerk. Each begins at a tenth of the limits of the arm file,
 which may be far too high. Up to these limits all three grow together, so that a step is the one before on a larger
-scale, and the tried one is nearer to its limit than the others; beyond, it grows alone. Ladders keep to the middle of
-the room of a joint: one that does not follow overshoots. The joint comes slowly to where its ladders begin, and goes
-slowly back.
+scale, and the tried one is nearer to its limit than the others; beyond, it grows alone. A joint that does not follow
+overshoots, the further the more is asked of it: ways are so short, and so much in the middle of the room of a joint,
+that it ends where nothing is touched. The joint comes slowly to where each ladder begins, and goes slowly back.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from planner.arms.arm import Arm, Joint
 from planner.arrays import FloatArray
 from planner.identification.profile import HELD, Limits, Quantity, Way, fastest, samples_of_way, there_and_back, way_at
-from planner.identification.room import room_of
+from planner.identification.room import BEYOND, Room, room_of
 from planner.trajectory import TEST_MOTION, TRAVELLING, Trajectory
 
 USUAL_FACTOR, LEAST_FACTOR, MOST_FACTOR = 1.6, 0.2, 10.0
@@ -30,6 +30,9 @@ _OTHERS = {
 }
 """Of the limits, where one of them is tried."""
 _MOST_SPEED = 0.95
+_OVERSHOOT = 0.75
+"""Of a way, for each time the file's limit that is asked of acceleration or jerk: by so much a joint overshoots at most
+which has three quarters of them. One that lacks speed alone is late, and hardly overshoots."""
 _SLOW = 0.1
 """Of every limit, on the way to a ladder and back: as its first step."""
 _REST_S = 0.5
@@ -82,10 +85,7 @@ def make_motion(arm: Arm, name: str, reach: FloatArray | None, rate_hz: float, f
     steps: list[Step] = []
     n_samples = 1
     for joint in range(arm.n_joints):
-        low, high = float(room.low[joint]), float(room.high[joint])
-        there = _slowly(arm, joint, float(room.pose[joint]), low, rate_hz)
-        ladders, found = _ladders(arm, joint, low, high - low, rate_hz, factor, n_samples + len(there) - 1)
-        line = np.concatenate((there, ladders, _slowly(arm, joint, low, float(room.pose[joint]), rate_hz)))
+        line, found = _ladders(arm, joint, room, rate_hz, factor, n_samples - 1)
         moved = np.repeat(room.pose[None], len(line), axis=0)
         moved[:, joint] = line
         parts.append(moved)
@@ -117,27 +117,54 @@ def scales(factor: float) -> list[float]:
 
 
 def _ladders(
-    arm: Arm, joint: int, low: float, length: float, rate_hz: float, factor: float, begin: int
+    arm: Arm, joint: int, room: Room, rate_hz: float, factor: float, begin: int
 ) -> tuple[FloatArray, list[Step]]:
-    """Positions (n,) of a joint, which is at `low` at sample `begin`, after that; and the steps."""
-    positions, steps = [np.empty(0)], []
+    """Positions (n,) of a joint after sample `begin`, at which all joints wait, until it does again; and the steps."""
+    pose, low, high = (float(one[joint]) for one in (room.pose, room.low, room.high))
+    positions, steps, at = [np.empty(0)], [], pose
     for quantity in Quantity:
-        level, number = 0.0, 0
-        for scale in scales(factor):
-            way = _way(arm.joints[joint], quantity, scale, length)
-            if way is None or way.jerk > factor * arm.joints[joint].max_jerk:
-                break
-            n_way, n_rest = samples_of_way(way, rate_hz)
-            samples = there_and_back(way, rate_hz, n_way)
-            levels = greatest_differences(samples, rate_hz)
-            if levels.of(quantity) < _GROWS * level:
-                break
-            level, number = levels.of(quantity), number + 1
-            positions.append(low + samples[1:])
+        ladder = _ladder(arm.joints[joint], quantity, _longest(quantity, high - low, factor), rate_hz, factor)
+        if not ladder:
+            continue
+        start = (low + high - max(way.length for way, _ in ladder)) / 2
+        positions.append(_slowly(arm, joint, at, start, rate_hz))
+        begin, at = begin + len(positions[-1]), start
+        for number, (way, samples) in enumerate(ladder, 1):
+            positions.append(start + samples[1:])
             last = begin + len(samples) - 1
+            n_way, n_rest = samples_of_way(way, rate_hz)
+            levels = greatest_differences(samples, rate_hz)
             steps.append(Step(joint, quantity, number, begin, last, n_way, n_rest, way, levels))
             begin = last
+    positions.append(_slowly(arm, joint, at, pose, rate_hz))
     return np.concatenate(positions), steps
+
+
+def _ladder(
+    joint: Joint, quantity: Quantity, length: float, rate_hz: float, factor: float
+) -> list[tuple[Way, FloatArray]]:
+    """The ways, no longer than `length`, and samples (n,) of each there and back, from 0 on."""
+    ladder: list[tuple[Way, FloatArray]] = []
+    level = 0.0
+    for scale in scales(factor):
+        way = _way(joint, quantity, scale, length)
+        if way is None or way.jerk > factor * joint.max_jerk:
+            break
+        samples = there_and_back(way, rate_hz, samples_of_way(way, rate_hz)[0])
+        harder = greatest_differences(samples, rate_hz).of(quantity)
+        if harder < _GROWS * level:
+            break
+        level = harder
+        ladder.append((way, samples))
+    return ladder
+
+
+def _longest(quantity: Quantity, room: float, factor: float) -> float:
+    """How long a way D may be in the middle of a room, that an overshoot by a share o of it stays within what is clear:
+    o D = (room - D) / 2 + what is clear beyond the room."""
+    if quantity is Quantity.VELOCITY:
+        return room
+    return room * (0.5 + BEYOND) / (0.5 + _OVERSHOOT * max(factor, 1.0))
 
 
 def greatest_differences(samples: FloatArray, rate_hz: float) -> Limits:

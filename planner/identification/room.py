@@ -17,13 +17,14 @@ _STATIONS = 121
 """Positions of a joint at which it is asked whether all is clear."""
 _KEPT = 0.03
 """Share of a joint's range that is left free at its ends: overshoot has to end somewhere."""
-_TRIED = 2 / 3
-"""Of the room, its middle: a joint that does not follow overshoots, and may do so by a quarter of a way."""
+BEYOND = 0.25
+"""Of the room, what is clear beyond each end of it: a joint that does not follow overshoots."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Room:
-    """pose: (n_joints,) where all joints wait. low, high: (n_joints,) between which each is tried while they do."""
+    """pose: (n_joints,) where all joints wait. low, high: (n_joints,) between which each is tried while they do;
+    `BEYOND` tells how much further it touches nothing."""
 
     pose: FloatArray
     low: FloatArray
@@ -72,7 +73,8 @@ def _around(kinematics: Kinematics, pose: FloatArray, low: FloatArray, high: Flo
         first = blocked[blocked < at].max(initial=-1) + 1
         last = blocked[blocked > at].min(initial=_STATIONS) - 1
         middle, half = (stations[first] + stations[last]) / 2, (stations[last] - stations[first]) / 2
-        lows[joint], highs[joint] = middle - _TRIED * half, middle + _TRIED * half
+        half /= 1 + 2 * BEYOND
+        lows[joint], highs[joint] = middle - half, middle + half
     return Room(pose, lows, highs)
 
 
