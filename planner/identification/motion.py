@@ -30,7 +30,7 @@ _OTHERS = {
 }
 """Of the limits, where one of them is tried."""
 _MOST_SPEED = 0.95
-_OVERSHOOT = 0.75
+_OVERSHOOT = 0.7
 """Of a way, for each time the file's limit that is asked of acceleration or jerk: by so much a joint overshoots at most
 which has three quarters of them. One that lacks speed alone is late, and hardly overshoots."""
 _SLOW = 0.1
@@ -123,13 +123,12 @@ def _ladders(
     pose, low, high = (float(one[joint]) for one in (room.pose, room.low, room.high))
     positions, steps, at = [np.empty(0)], [], pose
     for quantity in Quantity:
-        ladder = _ladder(arm.joints[joint], quantity, _longest(quantity, high - low, factor), rate_hz, factor)
-        if not ladder:
-            continue
-        start = (low + high - max(way.length for way, _ in ladder)) / 2
-        positions.append(_slowly(arm, joint, at, start, rate_hz))
-        begin, at = begin + len(positions[-1]), start
+        ladder = _ladder(arm.joints[joint], quantity, high - low, rate_hz, factor)
         for number, (way, samples) in enumerate(ladder, 1):
+            start = (low + high - max(later.length for later, _ in ladder[number - 1 :])) / 2
+            if start != at:
+                positions.append(_slowly(arm, joint, at, start, rate_hz))
+                begin, at = begin + len(positions[-1]), start
             positions.append(start + samples[1:])
             last = begin + len(samples) - 1
             n_way, n_rest = samples_of_way(way, rate_hz)
@@ -141,13 +140,13 @@ def _ladders(
 
 
 def _ladder(
-    joint: Joint, quantity: Quantity, length: float, rate_hz: float, factor: float
+    joint: Joint, quantity: Quantity, room: float, rate_hz: float, factor: float
 ) -> list[tuple[Way, FloatArray]]:
-    """The ways, no longer than `length`, and samples (n,) of each there and back, from 0 on."""
+    """The ways in the middle of a room, and samples (n,) of each there and back, from 0 on."""
     ladder: list[tuple[Way, FloatArray]] = []
     level = 0.0
     for scale in scales(factor):
-        way = _way(joint, quantity, scale, length)
+        way = _way(joint, quantity, scale, _longest(quantity, room, scale))
         if way is None or way.jerk > factor * joint.max_jerk:
             break
         samples = there_and_back(way, rate_hz, samples_of_way(way, rate_hz)[0])
@@ -159,12 +158,12 @@ def _ladder(
     return ladder
 
 
-def _longest(quantity: Quantity, room: float, factor: float) -> float:
+def _longest(quantity: Quantity, room: float, scale: float) -> float:
     """How long a way D may be in the middle of a room, that an overshoot by a share o of it stays within what is clear:
     o D = (room - D) / 2 + what is clear beyond the room."""
     if quantity is Quantity.VELOCITY:
         return room
-    return room * (0.5 + BEYOND) / (0.5 + _OVERSHOOT * max(factor, 1.0))
+    return room * (0.5 + BEYOND) / (0.5 + _OVERSHOOT * max(scale, 1.0))
 
 
 def greatest_differences(samples: FloatArray, rate_hz: float) -> Limits:
