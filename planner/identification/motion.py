@@ -30,9 +30,11 @@ _OTHERS = {
 }
 """Of the limits, where one of them is tried."""
 _MOST_SPEED = 0.95
-_OVERSHOOT = 0.7
+_OVERSHOOT = 0.75
 """Of a way, for each time the file's limit that is asked of acceleration or jerk: by so much a joint overshoots at most
 which has three quarters of them. One that lacks speed alone is late, and hardly overshoots."""
+_NEEDED = 1.25
+"""So many times the scale of a step, jerk may be needed to reach an acceleration: it makes joints overshoot most."""
 _SLOW = 0.1
 """Of every limit, on the way to a ladder and back: as its first step."""
 _REST_S = 0.5
@@ -147,7 +149,7 @@ def _ladder(
     level = 0.0
     for scale in scales(factor):
         way = _way(joint, quantity, scale, _longest(quantity, room, scale))
-        if way is None or way.jerk > factor * joint.max_jerk:
+        if way is None or way.jerk > min(factor, max(1.0, _NEEDED * scale)) * joint.max_jerk:
             break
         samples = there_and_back(way, rate_hz, samples_of_way(way, rate_hz)[0])
         harder = greatest_differences(samples, rate_hz).of(quantity)

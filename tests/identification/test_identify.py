@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
-from itertools import pairwise
+from itertools import pairwise, product
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +16,10 @@ from hypothesis import strategies as st
 from hardware.compensation.servo_values import own_calibration
 from hardware.playback.program import make_program
 from hardware.playback.recording import write_record
+from planner.arms.accuracy import Accuracy
 from planner.arms.arm import Arm, PenHold
 from planner.arms.arm_file import arms_folder, load_arm
+from planner.arms.arm_text import arm_toml
 from planner.arrays import FloatArray
 from planner.checking.check import check_trajectory
 from planner.cli import main
@@ -34,11 +36,11 @@ from planner.identification.found import (
 from planner.identification.measured import Measured, begins_at_s, read_verdicts
 from planner.identification.motion import COARSE, LadderMotion, limits_of, make_motion, scales
 from planner.identification.profile import Limits, Quantity, way_at
-from planner.identification.room import room_of
+from planner.identification.room import Room, room_of
 from planner.kinematics.chain import Kinematics
 from planner.trajectory import read_trajectory, write_trajectory
 from tests.identification.hidden_servo import HiddenServo
-from tests.identification.limited_servo import LimitedServo, any_servo, moved, reports
+from tests.identification.limited_servo import COUNT_DEG, LimitedServo, any_servo, moved, reports
 
 NAME, RATE_HZ, FACTOR = "drawing_arm_2022", 100.0, 1.6
 ARM = load_arm(NAME)
@@ -67,17 +69,21 @@ def scaled(arm: Arm, by: float) -> Arm:
     return replace(arm, joints=tuple(joints))
 
 
-def reported(motion: LadderMotion, joint: int, servo: LimitedServo, random: np.random.Generator) -> Measured:
-    """What the servo of one joint reports of its steps, each of which it begins at rest."""
+def told_in_steps(motion: LadderMotion, joint: int) -> FloatArray:
+    """(n, n_steps) deg that a joint is told in each of its steps, held at the end of shorter ones."""
     steps = [step for step in motion.steps if step.joint == joint]
     n_most = max(step.last - step.first for step in steps) + 1
     told = [motion.trajectory.positions[step.first : step.last + 1, joint] for step in steps]
-    was = moved(
-        [servo] * len(steps), np.stack([np.pad(one, (0, n_most - len(one)), "edge") for one in told], 1), RATE_HZ
-    )
+    return np.stack([np.pad(one, (0, n_most - len(one)), "edge") for one in told], axis=1)
+
+
+def reported(motion: LadderMotion, joint: int, servo: LimitedServo, random: np.random.Generator) -> Measured:
+    """What the servo of one joint reports of its steps, each of which it begins at rest."""
+    steps = [step for step in motion.steps if step.joint == joint]
+    was = moved([servo] * len(steps), told_in_steps(motion, joint), RATE_HZ)
     times_s, positions = [], []
-    for k, (step, one) in enumerate(zip(steps, told, strict=True)):
-        times, seen = reports(servo, was[: round(1000 * (len(one) - 1) / RATE_HZ) + 1, k], random)
+    for k, step in enumerate(steps):
+        times, seen = reports(servo, was[: round(1000 * (step.last - step.first) / RATE_HZ) + 1, k], random)
         times_s.append(step.first / RATE_HZ + times)
         positions.append(seen)
     table = np.full((sum(map(len, times_s)), len(motion.trajectory.columns)), np.nan)
@@ -137,17 +143,43 @@ def test_a_test_motion_is_safe(name: str) -> None:
         own_calibration(arm).to_servos(arm.from_file_units(trajectory.positions))
 
 
+def clear_of(room: Room) -> tuple[FloatArray, FloatArray]:
+    """(n_joints,) least and most to which joints may overshoot."""
+    beyond = (room.high - room.low) / 4
+    return room.low - beyond, room.high + beyond
+
+
 @pytest.mark.parametrize("name", [NAME, "so101", "drawing_arm"])
-def test_an_overshoot_by_a_quarter_of_a_way_touches_nothing(name: str) -> None:
+def test_an_overshoot_by_a_quarter_of_the_room_touches_nothing(name: str) -> None:
     arm = load_arm(name)
     room = room_of(arm, own_calibration(arm).reach)
     kinematics = Kinematics(replace(arm, couplings=(), pen=replace(arm.pen, hold=PenHold.FREE)))
-    for joint in range(arm.n_joints):
-        beyond = (room.high - room.low)[joint] / 4
+    for joint, (low, high) in enumerate(zip(*clear_of(room), strict=True)):
         poses = np.repeat(room.pose[None], 50, axis=0)
-        poses[:, joint] = np.linspace(room.low[joint] - beyond, room.high[joint] + beyond, 50)
+        poses[:, joint] = np.linspace(low, high, 50)
         assert np.all((poses >= arm.minimum) & (poses <= arm.maximum))
         assert kinematics.nodes_mm(poses)[:, :, 2].min() >= 0.0
+
+
+@pytest.mark.parametrize("name", [NAME, "so101", "drawing_arm"])
+def test_a_joint_that_has_three_quarters_of_its_limits_overshoots_into_what_is_clear(name: str) -> None:
+    """Each limit may be that low or by a third higher than the file says, and the others as they come; what reports
+    are off by is allowed for."""
+    arm, motion, random = load_arm(name), motion_of(name), np.random.default_rng(2)
+    low, high = np.degrees(clear_of(room_of(arm, own_calibration(arm).reach)))
+    spreads = [np.array(one) for one in product((0.75, 1.35), repeat=3)]
+    spreads += list(np.exp(random.uniform(np.log(0.75), np.log(1.35), (4, 3))))
+    for joint in range(arm.n_joints):
+        told = told_in_steps(motion, joint)
+        of_file = [limit / np.radians(1.0) for _, limit in limits_of(arm.joints[joint]).pairs()]
+        servos = [
+            any_servo(random, *(spread * of_file), lags_before=bool(number % 2))
+            for number, spread in enumerate(spreads)
+        ]
+        every = [servo for servo in servos for _ in range(told.shape[1])]
+        was = moved(every, np.tile(told, len(servos)), RATE_HZ)
+        assert was.min() >= low[joint] - 2 * COUNT_DEG
+        assert was.max() <= high[joint] + 2 * COUNT_DEG
 
 
 @given(factor=st.floats(0.2, 10.0))
@@ -383,6 +415,26 @@ def test_from_a_record_to_a_new_arm_file(tmp_path: Path, capsys: pytest.CaptureF
     assert main(asked) == 2
     assert "has no column q5_deg" in capsys.readouterr().err
     assert not new.exists()
+
+
+def test_a_calibrated_arm_is_told_a_test_motion_as_it_is_planned(tmp_path: Path) -> None:
+    """What is known of its slack and its lag leads no set point: both have to show, and the record is known again."""
+    joints = [
+        replace(one, servo=replace(one.servo, lag_s=0.04, backlash=np.radians(1.0), dead_band_us=3.0))
+        for one in ARM.joints
+        if one.servo is not None
+    ]
+    arm = replace(ARM, joints=tuple(joints), accuracy=Accuracy(49, 0.3, 0.2, (1e-3,) * ARM.n_joints))
+    mine, test, told, seen, new = (
+        tmp_path / f"{name}" for name in ("my.toml", "t.csv", "told.csv", "at.csv", "2.toml")
+    )
+    mine.write_text(arm_toml(arm))
+    assert main(["identify", "--arm", str(mine), "--factor", "0.2", "--rate", "50", "-o", str(test), "--quiet"]) == 0
+    playing = ["run", str(test), "--fast", "--servos", "real", "--beyond-limits", "--quiet"]
+    assert main([*playing, "--record", str(told), "--record-positions", str(seen)]) == 0
+    read = ["identify", str(mine), "--factor", "0.2", "--rate", "50", "-o", str(new), "--quiet"]
+    assert main([*read, "--record", str(told), "--positions", str(seen)]) == 0
+    assert [one.max_jerk for one in load_arm(str(new)).joints] == [one.max_jerk for one in arm.joints]
 
 
 def test_the_motion_is_found_in_the_record_of_a_run(tmp_path: Path) -> None:
