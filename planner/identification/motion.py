@@ -33,7 +33,7 @@ _MOST_SPEED = 0.95
 _OVERSHOOT = 0.75
 """Of a way, for each time the file's limit that is asked of acceleration or jerk: by so much a joint overshoots at most
 which has three quarters of them. One that lacks speed alone is late, and hardly overshoots."""
-_NEEDED = 1.25
+_NEEDED = 1.15
 """So many times the scale of a step, jerk may be needed to reach an acceleration: it makes joints overshoot most."""
 _SLOW = 0.1
 """Of every limit, on the way to a ladder and back: as its first step."""
