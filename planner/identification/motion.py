@@ -126,15 +126,14 @@ def _ladders(
     positions, steps, at = [np.empty(0)], [], pose
     for quantity in Quantity:
         ladder = _ladder(arm.joints[joint], quantity, high - low, rate_hz, factor)
-        for number, (way, samples) in enumerate(ladder, 1):
-            start = (low + high - max(later.length for later, _ in ladder[number - 1 :])) / 2
+        for number, (way, samples, levels) in enumerate(ladder, 1):
+            start = (low + high - max(later.length for later, *_ in ladder[number - 1 :])) / 2
             if start != at:
                 positions.append(_slowly(arm, joint, at, start, rate_hz))
                 begin, at = begin + len(positions[-1]), start
             positions.append(start + samples[1:])
             last = begin + len(samples) - 1
             n_way, n_rest = samples_of_way(way, rate_hz)
-            levels = greatest_differences(samples, rate_hz)
             steps.append(Step(joint, quantity, number, begin, last, n_way, n_rest, way, levels))
             begin = last
     positions.append(_slowly(arm, joint, at, pose, rate_hz))
@@ -143,20 +142,18 @@ def _ladders(
 
 def _ladder(
     joint: Joint, quantity: Quantity, room: float, rate_hz: float, factor: float
-) -> list[tuple[Way, FloatArray]]:
-    """The ways in the middle of a room, and samples (n,) of each there and back, from 0 on."""
-    ladder: list[tuple[Way, FloatArray]] = []
-    level = 0.0
+) -> list[tuple[Way, FloatArray, Limits]]:
+    """The ways in the middle of a room; samples (n,) of each there and back, from 0 on; and their levels."""
+    ladder: list[tuple[Way, FloatArray, Limits]] = []
     for scale in scales(factor):
         way = _way(joint, quantity, scale, _longest(quantity, room, scale))
         if way is None or way.jerk > min(factor, max(1.0, _NEEDED * scale)) * joint.max_jerk:
             break
         samples = there_and_back(way, rate_hz, samples_of_way(way, rate_hz)[0])
-        harder = greatest_differences(samples, rate_hz).of(quantity)
-        if harder < _GROWS * level:
+        levels = greatest_differences(samples, rate_hz)
+        if ladder and levels.of(quantity) < _GROWS * ladder[-1][2].of(quantity):
             break
-        level = harder
-        ladder.append((way, samples))
+        ladder.append((way, samples, levels))
     return ladder
 
 
