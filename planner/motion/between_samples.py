@@ -22,6 +22,10 @@ from planner.ragged import starts_of, within
 
 _PER_STEP = 4
 _FRACTIONS = np.arange(1, _PER_STEP) / _PER_STEP
+_NEARLY = 0.75
+"""Share of the room from which on a step is looked at more closely: where two segments of a stroke are as near, the tip
+may be furthest between two points that are measured, by a fifth and more."""
+_CLOSELY = np.setdiff1d(np.arange(1, 16) / 16, _FRACTIONS)
 _ACROSS = 1 / (9 * np.sqrt(3))
 """Largest weight of the sample behind a contact on the near side of it: of u (1 - u) (2 - u) / 6, u in 0 to 1."""
 _STEPS_AT_ONCE = 4096
@@ -38,27 +42,43 @@ def _lagrange(fractions: FloatArray) -> FloatArray:
     )
 
 
-_WEIGHTS = np.concatenate(
-    (np.column_stack((0 * _FRACTIONS, 1 - _FRACTIONS, _FRACTIONS, 0 * _FRACTIONS)), _lagrange(_FRACTIONS))
-)
-"""(2 (_PER_STEP - 1), 4) of straight lines and of cubics."""
+def _both_ways(fractions: FloatArray) -> FloatArray:
+    """(2 n, 4) weights of straight lines and of cubics."""
+    return np.concatenate(
+        (np.column_stack((0 * fractions, 1 - fractions, fractions, 0 * fractions)), _lagrange(fractions))
+    )
+
+
+_WEIGHTS, _CLOSE_WEIGHTS = _both_ways(_FRACTIONS), _both_ways(_CLOSELY)
 
 
 def tips_between(kinematics: Kinematics, joints: Sequence[FloatArray]) -> tuple[FloatArray, IntArray]:
     """Tips (total steps, n_points, 3) in mm between samples, for samples (n, n_joints) of motions that are held before
     and after; and the number of steps of each."""
+    held, first, n_steps = _held(joints)
+    return _tips(kinematics, held, first, _WEIGHTS), n_steps
+
+
+def _held(joints: Sequence[FloatArray]) -> tuple[FloatArray, IntArray, IntArray]:
+    """Samples of motions that are held before and after, where the four around each step begin, and the number of steps
+    of each motion."""
     counts = np.array([len(samples) for samples in joints])
     held = np.concatenate([part for samples in joints for part in (samples[:1], samples, samples[-1:])])
     first = np.repeat(starts_of(counts + 2)[:-1], counts - 1) + within(counts - 1)
-    tips = np.empty((len(first), len(_WEIGHTS), 3))
+    return held, first, counts - 1
+
+
+def _tips(kinematics: Kinematics, held: FloatArray, first: IntArray, weights: FloatArray) -> FloatArray:
+    """(n, n_weights, 3) tips in mm at such weights (n_weights, 4) of the four samples from each first one (n,) on."""
+    tips = np.empty((len(first), len(weights), 3))
     for begin in range(0, len(first), _STEPS_AT_ONCE):
         part = slice(begin, begin + _STEPS_AT_ONCE)
         around = held[first[part, None] + np.arange(4)]
-        between = np.einsum("pw,nwj->npj", _WEIGHTS, around)
+        between = np.einsum("pw,nwj->npj", weights, around)
         tips[part] = kinematics.tip_mm(kinematics.independent_of(between.reshape(-1, held.shape[1]))).reshape(
-            len(around), len(_WEIGHTS), 3
+            len(around), len(weights), 3
         )
-    return tips, counts - 1
+    return tips
 
 
 def stroke_excess(
@@ -75,7 +95,8 @@ def stroke_excess(
     samples: those of the motion, so late. How far the tip strays from the path grows with the square of the speed, and
     so does this figure; the path itself may be off the stroke.
     """
-    tips, n_steps = tips_between(kinematics, samples)
+    held, first, n_steps = _held(samples)
+    tips = _tips(kinematics, held, first, _WEIGHTS)
     at_samples = kinematics.tip_mm(kinematics.independent_of(np.concatenate(samples)))[:, :2]
     cells, fractions = motion.places(_PER_STEP, late)
     arc_mm = paths.arcs.at(cells, fractions)[:, 0]
@@ -85,6 +106,12 @@ def stroke_excess(
         for way in (slice(0, _PER_STEP - 1), slice(_PER_STEP - 1, None))
     ]
     deviation = np.max([_deviation(paths.line, curve, arc_mm, n_steps, room_mm) for curve in curves], axis=0)
+    close = np.flatnonzero((deviation > _NEARLY * room_mm) & (deviation <= room_mm))
+    if len(close):
+        closer = _tips(kinematics, held, first[close], _CLOSE_WEIGHTS)[..., :2]
+        deviation[close] = np.maximum(
+            deviation[close], _furthest_of(paths.line, closer, close, arc_mm, n_steps, room_mm)
+        )
     excess: FloatArray = deviation / room_mm
     over = excess > 1.0
     if over.any():
@@ -120,6 +147,19 @@ def _deviation(
     """(total steps,) how far curves, of _PER_STEP points a step, are from their polylines in each step, both ways."""
     deviations = line.deviations(curve_mm, arc_mm, lines_of_parts(n_steps, _PER_STEP), room_mm)
     return largest_of_parts(deviations, n_steps, _PER_STEP)
+
+
+def _furthest_of(
+    line: Polylines, points_mm: FloatArray, steps: IntArray, arc_mm: FloatArray, n_steps: IntArray, room_mm: float
+) -> FloatArray:
+    """(n,) how far points (n, n_points, 2) within some steps (n,) are from their polylines at most, by arc_mm as
+    `_deviation` has it."""
+    of_path = np.repeat(np.arange(len(n_steps)), n_steps)[steps]
+    place = (_PER_STEP * steps + of_path)[:, None] + _PER_STEP * np.tile(_CLOSELY, 2)
+    near_mm = np.interp(place.ravel(), np.arange(len(arc_mm)), arc_mm)
+    _, distance = line.distances(points_mm.reshape(-1, 2), near_mm, np.repeat(of_path, points_mm.shape[1]), room_mm)
+    furthest: FloatArray = distance.reshape(len(steps), -1).max(axis=1)
+    return furthest
 
 
 def travel_move_excess(

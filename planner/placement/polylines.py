@@ -97,6 +97,19 @@ class Polylines:
             best, least = np.where(distance < least, arc, best), np.minimum(distance, least)
         return best, least
 
+    def distances(
+        self, points_mm: FloatArray, near_mm: FloatArray, line: IntArray, exact_above_mm: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Feet and distances as `feet` has them, but exact above a distance."""
+        foot_mm, distance = self.feet(points_mm, near_mm, line)
+        for index in np.flatnonzero(distance > exact_above_mm).tolist():
+            reach = 2.0 * float(distance[index])
+            low, high = np.searchsorted(self.arc_mm, foot_mm[index] + np.array([-reach, reach])).tolist()
+            low, high = max(low - 1, int(self.first[line[index]])), min(high + 1, int(self.last[line[index]]) + 1)
+            piece = self.points_mm[low:high]
+            distance[index] = min(distance[index], to_segments(points_mm[index], piece[:-1], piece[1:]).min())
+        return foot_mm, distance
+
     def deviations(
         self, curves_mm: FloatArray, near_mm: FloatArray, line: IntArray, exact_above_mm: float
     ) -> FloatArray:
@@ -106,13 +119,7 @@ class Polylines:
         curves_mm: (n, 2) curve after curve; near_mm: (n,) about where these points belong on the axis; line: (n,) the
         polyline that each follows.
         """
-        foot_mm, deviation = self.feet(curves_mm, near_mm, line)
-        for index in np.flatnonzero(deviation > exact_above_mm).tolist():
-            reach = 2.0 * float(deviation[index])
-            low, high = np.searchsorted(self.arc_mm, foot_mm[index] + np.array([-reach, reach])).tolist()
-            low, high = max(low - 1, int(self.first[line[index]])), min(high + 1, int(self.last[line[index]]) + 1)
-            piece = self.points_mm[low:high]
-            deviation[index] = min(deviation[index], to_segments(curves_mm[index], piece[:-1], piece[1:]).min())
+        foot_mm, deviation = self.distances(curves_mm, near_mm, line, exact_above_mm)
         place, missed = self._passed(curves_mm, foot_mm, line)
         np.maximum.at(deviation, place, missed)
         return deviation
