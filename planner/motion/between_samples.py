@@ -25,7 +25,7 @@ _FRACTIONS = np.arange(1, _PER_STEP) / _PER_STEP
 _NEARLY = 0.75
 """Share of the room from which on a step is looked at more closely: where two segments of a stroke are as near, the tip
 may be furthest between two points that are measured, by a fifth and more."""
-_CLOSELY = np.setdiff1d(np.arange(1, 16) / 16, _FRACTIONS)
+_CLOSELY = np.array([k / 16 for k in range(1, 16) if k % (16 // _PER_STEP)])
 _ACROSS = 1 / (9 * np.sqrt(3))
 """Largest weight of the sample behind a contact on the near side of it: of u (1 - u) (2 - u) / 6, u in 0 to 1."""
 _STEPS_AT_ONCE = 4096
