@@ -28,7 +28,7 @@ _MARGIN, _MARGIN_THERE = 0.97, 0.94
 """What is aimed at, of what is allowed, where all of a stroke is slowed, and where some places are."""
 _FEW_PERIODS = 0.5
 """Where no more is lost, all of a stroke is slowed: to time it anew would save less than that takes."""
-_LATE = (0.0, 0.25, 0.5, 0.75)
+_LATE = (0.25, 0.5, 0.75)
 _MANY_PERIODS = 300
 """Shares of a period by which samples may come later: what slows one place moves all samples behind it. So a stroke
 that is timed anew more than once, or lasts longer, is slowed at each place for the samples that are worst there: there
@@ -80,7 +80,8 @@ def timed_within(
         if not over.any():
             break
         problem, paths, splines, left = problem.subset(over), paths.subset(over), splines.subset(over), left[over]
-        cap = _cap_where_over(kinematics, paths, tried.motion.subset(over), tolerance_mm, int(around))
+        excess = tried.excess[np.repeat(over, tried.motion.n_periods)]
+        cap = _cap_where_over(kinematics, paths, tried.motion.subset(over), excess, tolerance_mm, int(around))
         problem = replace(problem, rate_limit=np.minimum(problem.rate_limit, cap))
     return [timed[index] for index in sorted(timed)]
 
@@ -112,21 +113,27 @@ def _tried(
 
 
 def _cap_where_over(
-    kinematics: Kinematics, paths: StrokePaths, motion: StrokeMotions, tolerance_mm: float, around: int
+    kinematics: Kinematics,
+    paths: StrokePaths,
+    motion: StrokeMotions,
+    excess: FloatArray,
+    tolerance_mm: float,
+    around: int,
 ) -> FloatArray:
-    """(total cells,) caps on dsigma/dt, inf where the tip does not stray too far, whenever the samples are."""
-    cap = np.full(int(paths.pen.n_cells.sum()), np.inf)
-    for late in _LATE:
-        chosen = (motion.n_periods > _MANY_PERIODS) | (around > 1 or late == 0.0)
-        if chosen.any():
-            some, of = motion.subset(chosen), paths.subset(chosen)
-            excess = stroke_excess(kinematics, of, some, some.samples(late), tolerance_mm, late)
-            cells = np.repeat(chosen, paths.pen.n_cells)
-            cap[cells] = np.minimum(cap[cells], _slower_where(some, excess, around, late))
+    """(total cells,) caps on dsigma/dt, inf where the tip does not stray too far; excess: (total steps,) at the samples
+    as they are."""
+    cap = _slower_where(motion, excess, around)
+    chosen = (motion.n_periods > _MANY_PERIODS) | (around > 1)
+    if chosen.any():
+        some, of = motion.subset(chosen), paths.subset(chosen)
+        cells = np.repeat(chosen, paths.pen.n_cells)
+        for late in _LATE:
+            later = stroke_excess(kinematics, of, some, some.samples(late), tolerance_mm, late)
+            cap[cells] = np.minimum(cap[cells], _slower_where(some, later, around, late))
     return cap
 
 
-def _slower_where(motion: StrokeMotions, excess: FloatArray, around: int, late: float) -> FloatArray:
+def _slower_where(motion: StrokeMotions, excess: FloatArray, around: int, late: float = 0.0) -> FloatArray:
     """(total cells,) caps on dsigma/dt below the motion's own in the cells of each step (total steps,) with an excess,
     and of so many steps before and behind; inf elsewhere."""
     n_cells, n_steps = motion.paths.n_cells, motion.steps(late)

@@ -124,14 +124,14 @@ def quickest_candidates(
         if height < lift_mm
     ]
     none = np.empty((len(slopes.along), 0))
-    columns = [
-        np.concatenate([none, *(getattr(candidates, field.name) for candidates in made)], axis=1)
-        for field in fields(Candidates)
-    ]
-    heights_mm = columns[[field.name for field in fields(Candidates)].index("handover_mm")]
-    columns[-1] = np.where(least_mm * (1 - 1e-9) > heights_mm.T, np.inf, columns[-1].T).T
-    order = np.argsort(columns[-1], axis=1, kind="stable")
-    return Candidates(*(np.take_along_axis(column, order, axis=1) for column in columns))
+    names = [field.name for field in fields(Candidates)]
+    columns = {
+        name: np.concatenate([none, *(getattr(candidates, name) for candidates in made)], axis=1) for name in names
+    }
+    is_low = columns["handover_mm"] < np.reshape(least_mm, (-1, 1)) * (1 - 1e-9)
+    columns["seconds"][is_low] = np.inf
+    order = np.argsort(columns["seconds"], axis=1, kind="stable")
+    return Candidates(**{name: np.take_along_axis(column, order, axis=1) for name, column in columns.items()})
 
 
 def _quickest_from(
