@@ -14,6 +14,10 @@ _GAP_MM = 1e4
 _STEPS = 3
 """Steps along a polyline towards the point that is nearest: each goes as far as its segment says."""
 _LONGEST_STEP_MM = 0.5
+_OWN_PASS = 4.0
+"""Times the distance from which on figures are exact: where a curve passes a vertex within so much of it along the
+polyline. A polyline that passes a place twice has its vertices measured against the curve's own pass each time: beside
+the other pass a vertex is near to the curve while the line behind it is not."""
 _STRIDES = (1, 2, 4, 8, 16, 32, 16, 8, 4, 2, 1)
 """How many points of a curve are gone at a time in search of the one nearest to a vertex: few first, so that none leads
 to another stretch of the curve while this one is nearer."""
@@ -120,17 +124,22 @@ class Polylines:
         polyline that each follows.
         """
         foot_mm, deviation = self.distances(curves_mm, near_mm, line, exact_above_mm)
-        place, missed = self._passed(curves_mm, foot_mm, line)
+        place, missed = self._passed(curves_mm, foot_mm, line, _OWN_PASS * exact_above_mm)
         np.maximum.at(deviation, place, missed)
         return deviation
 
-    def _passed(self, curves_mm: FloatArray, foot_mm: FloatArray, line: IntArray) -> tuple[IntArray, FloatArray]:
-        """The point of a curve nearest to each point of the polylines, and how far curve and point are apart."""
+    def _passed(
+        self, curves_mm: FloatArray, foot_mm: FloatArray, line: IntArray, around_mm: float
+    ) -> tuple[IntArray, FloatArray]:
+        """The point of a curve nearest to each point of the polylines, of those with feet so near to it, and how far
+        curve and point are apart."""
         counts = self.last - self.first + 1
         first = np.searchsorted(line, np.arange(len(counts)))
-        low = np.repeat(first, counts)
-        high = np.repeat(np.append(first[1:], len(line)) - 1, counts)
-        place = np.clip(np.searchsorted(np.maximum.accumulate(foot_mm), self.arc_mm), low, high)
+        reached = np.maximum.accumulate(foot_mm)
+        begin, end = np.repeat(first, counts), np.repeat(np.append(first[1:], len(line)) - 1, counts)
+        place = np.clip(np.searchsorted(reached, self.arc_mm), begin, end)
+        low = np.maximum(np.searchsorted(reached, self.arc_mm - around_mm) - 1, begin)
+        high = np.minimum(np.searchsorted(reached, self.arc_mm + around_mm), end)
         least = np.hypot(*(curves_mm[place] - self.points_mm).T)
         for stride in _STRIDES:
             middle = place
