@@ -7,7 +7,8 @@ import numpy as np
 from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.placement.pen_path import StrokePaths
-from planner.placement.polylines import lines_of_parts, to_segments
+from planner.placement.polylines import lines_of_parts
+from planner.placement.segments import to_segments
 from planner.ragged import starts_of
 from planner.settings import PlanSettings
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from planner.arrays import BoolArray, FloatArray, IntArray
+from planner.placement.segments import Segments, to_segments
 from planner.ragged import starts_of
 
 _GAP_MM = 1e4
@@ -15,9 +16,10 @@ _STEPS = 3
 """Steps along a polyline towards the point that is nearest: each goes as far as its segment says."""
 _LONGEST_STEP_MM = 0.5
 _OWN_PASS = 4.0
-"""Times the distance from which on figures are exact: where a curve passes a vertex within so much of it along the
-polyline. A polyline that passes a place twice has its vertices measured against the curve's own pass each time: beside
-the other pass a vertex is near to the curve while the line behind it is not."""
+"""Times the distance from which on figures are exact: a curve passes a vertex with points that have their feet so near
+to it."""
+_BESIDE = np.arange(-32, 33) / 16
+"""Where line beside a vertex is looked at, in such distances."""
 _STRIDES = (1, 2, 4, 8, 16, 32, 16, 8, 4, 2, 1)
 """How many points of a curve are gone at a time in search of the one nearest to a vertex: few first, so that none leads
 to another stretch of the curve while this one is nearer."""
@@ -124,41 +126,58 @@ class Polylines:
         polyline that each follows.
         """
         foot_mm, deviation = self.distances(curves_mm, near_mm, line, exact_above_mm)
-        place, missed = self._passed(curves_mm, foot_mm, line, _OWN_PASS * exact_above_mm)
+        place, missed = self._passed(curves_mm, foot_mm, line, exact_above_mm)
         np.maximum.at(deviation, place, missed)
         return deviation
 
     def _passed(
-        self, curves_mm: FloatArray, foot_mm: FloatArray, line: IntArray, around_mm: float
+        self, curves_mm: FloatArray, foot_mm: FloatArray, line: IntArray, exact_above_mm: float
     ) -> tuple[IntArray, FloatArray]:
-        """The point of a curve nearest to each point of the polylines, of those with feet so near to it, and how far
-        curve and point are apart."""
+        """The point of a curve that passes each point of the polylines, and how far curve and point are apart.
+
+        A polyline that passes a place twice has its points measured from the curve's own pass each time. Where that is
+        far away, another pass may be near enough: then it counts, for the point and for the line beside it, which it
+        may leave sooner than the own pass comes back.
+        """
         counts = self.last - self.first + 1
-        first = np.searchsorted(line, np.arange(len(counts)))
+        begins = np.searchsorted(line, np.arange(len(counts)))
+        begin, end = np.repeat(begins, counts), np.repeat(np.append(begins[1:], len(line)) - 1, counts)
         reached = np.maximum.accumulate(foot_mm)
-        begin, end = np.repeat(first, counts), np.repeat(np.append(first[1:], len(line)) - 1, counts)
         place = np.clip(np.searchsorted(reached, self.arc_mm), begin, end)
-        low = np.maximum(np.searchsorted(reached, self.arc_mm - around_mm) - 1, begin)
-        high = np.minimum(np.searchsorted(reached, self.arc_mm + around_mm), end)
-        least = np.hypot(*(curves_mm[place] - self.points_mm).T)
-        for stride in _STRIDES:
-            middle = place
-            for step in (-stride, stride):
-                tried = np.clip(middle + step, low, high)
-                gap = np.hypot(*(curves_mm[tried] - self.points_mm).T)
-                place, least = np.where(gap < least, tried, place), np.minimum(gap, least)
-        for begin, end in ((np.maximum(place - 1, low), place), (place, np.minimum(place + 1, high))):
-            np.minimum(least, to_segments(self.points_mm, curves_mm[begin], curves_mm[end]), out=least)
-        return place, least
+        reach_mm = _OWN_PASS * exact_above_mm
+        low = np.maximum(np.searchsorted(reached, self.arc_mm - reach_mm) - 1, begin)
+        high = np.minimum(np.searchsorted(reached, self.arc_mm + reach_mm), end)
+        place, missed = _nearest(self.points_mm, curves_mm, place, low, high)
+        far = np.flatnonzero(missed > exact_above_mm)
+        if len(far):
+            of = np.repeat(np.arange(len(counts)), counts)[far]
+            beside_mm = self.arc_mm[far, None] + exact_above_mm * _BESIDE
+            beside_mm = np.clip(beside_mm, self.begin_mm[of, None], self.end_mm[of, None])
+            around = Segments.of(curves_mm, line)
+            for index, number, line_mm in zip(far.tolist(), of.tolist(), self.at(beside_mm), strict=True):
+                segments = around.near(self.points_mm[index], number, 3.0 * exact_above_mm)
+                at_point = float(to_segments(self.points_mm[index], *segments).min(initial=missed[index]))
+                if at_point <= exact_above_mm:
+                    at_point = float(to_segments(line_mm[:, None], *segments).min(axis=1).max())
+                missed[index] = at_point
+        return place, missed
 
 
-def to_segments(points_mm: FloatArray, begins_mm: FloatArray, ends_mm: FloatArray) -> FloatArray:
-    """(n,) distance of points to segments, all (n, 2) or broadcast to that."""
-    along, offset = ends_mm - begins_mm, points_mm - begins_mm
-    share = (offset * along).sum(axis=-1) / np.maximum((along * along).sum(axis=-1), 1e-18)
-    off = offset - np.clip(share, 0.0, 1.0)[..., None] * along
-    distance: FloatArray = np.hypot(off[..., 0], off[..., 1])
-    return distance
+def _nearest(
+    points_mm: FloatArray, curve_mm: FloatArray, place: IntArray, low: IntArray, high: IntArray
+) -> tuple[IntArray, FloatArray]:
+    """The point of a curve (n, 2) that is nearest to each of some points (k, 2), and how far the curve is from these;
+    sought from some place (k,) on between two others."""
+    least = np.hypot(*(curve_mm[place] - points_mm).T)
+    for stride in _STRIDES:
+        middle = place
+        for step in (-stride, stride):
+            tried = np.clip(middle + step, low, high)
+            gap = np.hypot(*(curve_mm[tried] - points_mm).T)
+            place, least = np.where(gap < least, tried, place), np.minimum(gap, least)
+    for begin, end in ((np.maximum(place - 1, low), place), (place, np.minimum(place + 1, high))):
+        np.minimum(least, to_segments(points_mm, curve_mm[begin], curve_mm[end]), out=least)
+    return place, least
 
 
 def lines_of_parts(n_parts: IntArray, per_part: int) -> IntArray:
