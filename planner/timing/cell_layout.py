@@ -9,6 +9,9 @@ import numpy as np
 from planner.arrays import FloatArray, IntArray
 from planner.ragged import starts_of, within
 
+PAIRS = np.tril_indices(4)
+"""Rows and columns of the entries that the four unknowns of a cell have in a symmetric matrix."""
+
 
 class CellLayout:
     """Paths laid end to end; the unknowns of a path are b and b' at each of its n_cells + 1 knots in turn.
@@ -25,11 +28,25 @@ class CellLayout:
         self.first_unknown = np.repeat(starts_of(n_unknowns)[:-1], n_cells) + 2 * within(n_cells)
         self.first_cell = starts_of(n_cells)[:-1]
         self.path_of_cell = np.repeat(np.arange(self.n_paths), n_cells)
+        self._unknown = (self.first_unknown + np.arange(4)[:, None]).ravel()
+        rows, columns = (index[:, None] for index in PAIRS)
+        self._entry = ((rows - columns) * self.n_unknowns + self.first_unknown + columns).ravel()
         self.path_of_unknown = np.repeat(np.arange(self.n_paths), n_unknowns)
 
     def unknowns_of_cells(self, b: FloatArray) -> FloatArray:
         """(4, cells) b and b' at the left end of each cell, then at its right."""
         return np.stack([b[self.first_unknown + k] for k in range(4)])
+
+    def unknowns_of(self, of_cells: FloatArray) -> FloatArray:
+        """(n_unknowns,) sums of what cells have of each of their unknowns (4, cells)."""
+        sums: FloatArray = np.bincount(self._unknown, of_cells.ravel(), self.n_unknowns)
+        return sums
+
+    def band_of(self, entries: FloatArray) -> FloatArray:
+        """(4, n_unknowns) the lower band of a matrix, entry (i + k, i) at [k, i], from what cells have of the entries
+        of PAIRS (10, cells)."""
+        band: FloatArray = np.bincount(self._entry, entries.ravel(), 4 * self.n_unknowns).reshape(4, -1)
+        return band
 
     def total(self, per_cell: Iterable[FloatArray]) -> FloatArray:
         """(n_paths,) sums over all that belongs to a path, of arrays (..., cells)."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from planner.arrays import BoolArray, FloatArray
 from planner.timing.cell_cubics import BOOLE, VALUE_FORMS, linear_form
-from planner.timing.cell_layout import CellLayout
+from planner.timing.cell_layout import PAIRS, CellLayout
 from planner.timing.per_limit import PerLimit
 from planner.timing.timing_problem import FRACTIONS, TimingProblem
 
@@ -36,8 +36,8 @@ class DiscreteProblem:
     """Paths to be timed, with their limits as linear forms of the unknowns.
 
     b_by_limit: (5, cells) what b is multiplied by to be in units of its greatest; acceleration: (4, 2, n joints that
-    can reach that limit, cells) and jerk: (4, 5, n_joints, cells) factors of the four unknowns of a cell; n_limits:
-    (n_paths,) limits of each path.
+    can reach that limit, cells) and jerk: (4, 5, n_joints, cells) factors of the four unknowns of a cell;
+    acceleration_pairs, jerk_pairs: (10, ...) their products, by PAIRS; n_limits: (n_paths,) limits of each path.
     """
 
     def __init__(self, problem: TimingProblem) -> None:
@@ -57,6 +57,9 @@ class DiscreteProblem:
                 for k, fraction in enumerate(FRACTIONS)
             ],
             axis=1,
+        )
+        self.acceleration_pairs, self.jerk_pairs = (
+            form[PAIRS[0]] * form[PAIRS[1]] for form in (self.acceleration, self.jerk)
         )
         per_cell = len(FRACTIONS) + 2 * sum(form[0, ..., 0].size for form in (self.acceleration, self.jerk))
         self.n_limits = problem.n_cells * per_cell

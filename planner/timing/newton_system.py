@@ -12,7 +12,7 @@ import numpy as np
 from planner.arrays import BoolArray, FloatArray
 from planner.lapack import dpbtrf, dpbtrs
 from planner.timing.cell_cubics import BOOLE, VALUE_FORMS
-from planner.timing.cell_layout import CellLayout
+from planner.timing.cell_layout import PAIRS, CellLayout
 from planner.timing.discrete_problem import DiscreteProblem
 from planner.timing.iterate import Iterate
 from planner.timing.per_limit import PerLimit
@@ -21,6 +21,8 @@ _FLATTEST = 1e-9
 """Least factor of the second derivative of the time, where the jerk limits' own would make it negative."""
 _SHIFT = 1e-12
 """Added to the diagonal, which is 1 everywhere: a matrix that is singular to the last digit is factorised yet."""
+
+_SQUARES = (VALUE_FORMS[:, PAIRS[0]] * VALUE_FORMS[:, PAIRS[1]]).T
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -54,24 +56,17 @@ def newton_system(
     by_b_twice += stiffness.rate * problem.b_by_limit**2
     by_b_and_jerk = 0.5 * per_cubed_rate[:, None] * allowed * (stiffness.jerk_above - stiffness.jerk_below)
 
-    cell = problem.layout.first_unknown
-    gradient = np.zeros(problem.layout.n_unknowns)
-    band = np.zeros((4, problem.layout.n_unknowns))
-    crossed = [_over_joints(problem.jerk[k], by_b_and_jerk) for k in range(4)]
-    for row in range(4):
-        ends = VALUE_FORMS[:, row] @ by_b
-        ends += _over_all(problem.jerk[row], jerk_push)
-        ends += _over_all(problem.acceleration[row], acceleration_push)
-        gradient[cell + row] += ends
-        jerk = problem.jerk[row] * jerk_stiffness
-        acceleration = problem.acceleration[row] * acceleration_stiffness
-        for column in range(row + 1):
-            entry = (VALUE_FORMS[:, row] * VALUE_FORMS[:, column]) @ by_b_twice
-            entry += VALUE_FORMS[:, row] @ crossed[column] + VALUE_FORMS[:, column] @ crossed[row]
-            entry += _over_all(jerk, problem.jerk[column])
-            entry += _over_all(acceleration, problem.acceleration[column])
-            band[row - column, cell + column] += entry
-    return NewtonSystem(band, gradient)
+    gradient = VALUE_FORMS.T @ by_b
+    gradient += np.einsum("kpjc,pjc->kc", problem.jerk, jerk_push)
+    gradient += np.einsum("kpjc,pjc->kc", problem.acceleration, acceleration_push)
+    crossed = np.einsum("kpjc,pjc->pkc", problem.jerk, by_b_and_jerk)
+    mixed = (VALUE_FORMS.T @ crossed.reshape(len(crossed), -1)).reshape(4, 4, -1)
+    entries = _SQUARES @ by_b_twice
+    entries += mixed[PAIRS] + mixed[PAIRS[::-1]]
+    entries += np.einsum("kpjc,pjc->kc", problem.jerk_pairs, jerk_stiffness)
+    entries += np.einsum("kpjc,pjc->kc", problem.acceleration_pairs, acceleration_stiffness)
+    layout = problem.layout
+    return NewtonSystem(layout.band_of(entries), layout.unknowns_of(gradient))
 
 
 def newton_direction(layout: CellLayout, system: NewtonSystem) -> tuple[FloatArray, BoolArray]:
@@ -103,10 +98,4 @@ def newton_direction(layout: CellLayout, system: NewtonSystem) -> tuple[FloatArr
 def _over_joints(one: FloatArray, other: FloatArray) -> FloatArray:
     """(n_points, cells) sums over the joints."""
     sums: FloatArray = np.einsum("pjc,pjc->pc", one, other)
-    return sums
-
-
-def _over_all(one: FloatArray, other: FloatArray) -> FloatArray:
-    """(cells,) sums over points and joints."""
-    sums: FloatArray = np.einsum("pjc,pjc->c", one, other)
     return sums

@@ -30,6 +30,8 @@ where what formulas find quicker may not."""
 RESTING_SHARE = 0.6
 """Share of the limits for the height of a travel move that is at rest at the lift height."""
 _SHARES = np.linspace(0.1, 1.0, 13)
+_ROWS_AT_ONCE = 300
+"""Shares and travel moves that formulas take together: fewer cost more calls, more do not fit a processor's cache."""
 _DEPTH_ROUNDS = 6
 _LEAST_REST = 1e-3
 """Share of its limits that a joint keeps for the move over the paper at least, lest that take for ever."""
@@ -150,19 +152,21 @@ def _quickest_from(
     n_travel_moves, cap = len(up_jerk), speeds_mm_s[0]
     shape = n_travel_moves, len(_SHARES)
     seconds, at, rise_mm = np.empty(shape), np.empty(shape, dtype=np.int64), np.empty(shape)
-    cruises = down_acceleration[:, None] > -_NEVER_STEEP
-    for column, share in enumerate(_SHARES.tolist()):
-        over_s = rest_to_rest_s(
-            coordinate_limits(slopes.along, rest_of(slopes, limits, np.full(n_travel_moves, share)))
-        )
-        jerk = share * np.minimum(up_jerk, down_jerk)
-        turn_s, excess_mm = _turn((up_speed, up_acceleration), (down_speed, down_acceleration), jerk)
+    at_once = max(1, _ROWS_AT_ONCE // max(n_travel_moves, 1))
+    for first in range(0, len(_SHARES), at_once):
+        shares = _SHARES[first : first + at_once]
+        move, share = np.repeat(np.arange(n_travel_moves), len(shares)), np.tile(shares, n_travel_moves)
+        over_s = rest_to_rest_s(coordinate_limits(slopes.along[move], rest_of(slopes.subset(move), limits, share)))
+        jerk = share[:, None] * np.minimum(up_jerk, down_jerk)[move]
+        up, down = (up_speed[move], up_acceleration[move]), (down_speed[move], down_acceleration[move])
+        turn_s, excess_mm = _turn(up, down, jerk)
+        cruises = down[1][:, None] > -_NEVER_STEEP
         turn_s += np.where(cruises, excess_mm / cap, 0.0)
-        whole_s = below_up_s[:, :, None] + below_down_s[:, None] + np.maximum(over_s[:, None, None], turn_s)
-        _, up_mm = _brake(up_speed, up_acceleration, jerk)
+        whole_s = below_up_s[move, :, None] + below_down_s[move, None] + np.maximum(over_s[:, None, None], turn_s)
+        _, up_mm = _brake(*up, jerk)
         whole_s[handover_mm + up_mm > lift_mm] = np.inf
         # Braking that so little jerk cannot end before the pen falls faster than it may.
-        whole_s[up_speed - up_acceleration**2 / (2 * jerk) < -cap] = np.inf
+        whole_s[up[0] - up[1] ** 2 / (2 * jerk) < -cap] = np.inf
         met_s, met_mm = _where_met(whole_s, excess_mm, rises)
         whole_s[~(cruises & (excess_mm >= 0.0))] = np.inf
         best = whole_s.argmin(axis=1)[:, None]
@@ -170,9 +174,10 @@ def _quickest_from(
         from_mm = np.where(least_s < met_s, rises[best[:, 0]], met_mm)
         least_s = np.minimum(least_s, met_s)
         fall = least_s.argmin(axis=1)[:, None]
-        at[:, column : column + 1] = fall
-        seconds[:, column : column + 1] = np.take_along_axis(least_s, fall, axis=1)
-        rise_mm[:, column : column + 1] = np.take_along_axis(from_mm, fall, axis=1)
+        block = slice(first, first + at_once)
+        at[:, block] = fall.reshape(n_travel_moves, -1)
+        seconds[:, block] = np.take_along_axis(least_s, fall, axis=1).reshape(n_travel_moves, -1)
+        rise_mm[:, block] = np.take_along_axis(from_mm, fall, axis=1).reshape(n_travel_moves, -1)
     speed, aim = np.divmod(at, len(falls))
     return Candidates(
         np.broadcast_to(_SHARES, at.shape),
