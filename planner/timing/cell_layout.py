@@ -39,14 +39,13 @@ class CellLayout:
 
     def unknowns_of(self, of_cells: FloatArray) -> FloatArray:
         """(n_unknowns,) sums of what cells have of each of their unknowns (4, cells)."""
-        sums: FloatArray = np.bincount(self._unknown, of_cells.ravel(), self.n_unknowns)
-        return sums
+        return np.bincount(self._unknown, of_cells.ravel(), self.n_unknowns).astype(np.float64, copy=False)
 
     def band_of(self, entries: FloatArray) -> FloatArray:
         """(4, n_unknowns) the lower band of a matrix, entry (i + k, i) at [k, i], from what cells have of the entries
         of PAIRS (10, cells)."""
-        band: FloatArray = np.bincount(self._entry, entries.ravel(), 4 * self.n_unknowns).reshape(4, -1)
-        return band
+        band = np.bincount(self._entry, entries.ravel(), 4 * self.n_unknowns).reshape(4, -1)
+        return band.astype(np.float64, copy=False)
 
     def total(self, per_cell: Iterable[FloatArray]) -> FloatArray:
         """(n_paths,) sums over all that belongs to a path, of arrays (..., cells)."""
