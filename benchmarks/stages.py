@@ -1,55 +1,67 @@
-"""Time of each stage of a plan, and points per second, over a folder of drawings.
+"""Where the time of a plan goes, stage by stage, over a folder of drawings.
 
     python benchmarks/stages.py FOLDER [--arm NAME] [--method NAME]
 
-One process, one run a drawing after one that warms up; a point is a vertex of the strokes as they are drawn.
+One process, one run a drawing after one that warms up, each under a profiler, which makes them slower. Stages hold what
+they call.
 """
 
 from __future__ import annotations
 
 import argparse
-import resource
+import cProfile
+import pstats
 import tempfile
 import time
-from collections import Counter
-from collections.abc import Callable
-from functools import wraps
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
-from planner import pipeline
+from planner.drawing.svg import read_drawing
 from planner.errors import PlannerError
-from planner.motion import held_motion, line
+from planner.execution.work_chunks import planned_travel_moves, timed_strokes
+from planner.inverse_kinematics.stroke_configurations import joint_paths
+from planner.motion.between_samples import stroke_excess
+from planner.pen_drawing import PenDrawing
+from planner.pipeline import plan
+from planner.placement.pen_path import smoothed
+from planner.progress import unreported
 from planner.settings import Method, PlanSettings
+from planner.timing.path_timing import minimum_time
 from planner.trajectory import write_trajectory
-from planner.travel import clear_moves
 
 STAGES = {
-    "read_drawing": "read",
-    "flatten_all": "flatten",
-    "join_strokes": "join",
-    "ordered": "order",
-    "smoothed": "smooth",
-    "joint_paths": "configurations",
-    "minimum_time": "timing",
-    "motions": "check limits",
-    "plan_travel_moves": "travel moves",
+    "read": read_drawing,
+    "join": PenDrawing.take,
+    "order": PenDrawing.order,
+    "strokes": timed_strokes,
+    "of these: smooth": smoothed,
+    "configurations": joint_paths,
+    "timing": minimum_time,
+    "tolerance": stroke_excess,
+    "pen-up moves": planned_travel_moves,
+    "write": write_trajectory,
 }
 
-MODULES = (pipeline, line, held_motion, clear_moves)
-"""Where these are called."""
 
-
-def _counted(function: Callable[..., Any], stage: str, spent: Counter[str]) -> Callable[..., Any]:
-    @wraps(function)
-    def run(*arguments: Any, **options: Any) -> Any:
-        began = time.perf_counter()
+def stages_of(drawing: Path, settings: PlanSettings) -> Mapping[str, float]:
+    """Seconds of each of STAGES, and of the whole. Errors: PlannerError."""
+    profile = cProfile.Profile()
+    began = time.perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        profile.enable()
         try:
-            return function(*arguments, **options)
+            write_trajectory(plan(drawing, settings, unreported).trajectory, Path(folder) / "traj.csv")
         finally:
-            spent[stage] += time.perf_counter() - began
-
-    return run
+            profile.disable()
+    whole_s = time.perf_counter() - began
+    spent = {
+        (file, line): cumulative for (file, line, _), (_, _, _, cumulative, _) in pstats.Stats(profile).stats.items()
+    }
+    codes = {stage: function.__code__ for stage, function in STAGES.items()}
+    return {
+        **{stage: spent.get((code.co_filename, code.co_firstlineno), 0.0) for stage, code in codes.items()},
+        "whole": whole_s,
+    }
 
 
 def main() -> None:
@@ -59,43 +71,20 @@ def main() -> None:
     parser.add_argument("--method", default="path", choices=[method.value for method in Method])
     options = parser.parse_args()
     settings = PlanSettings(arm=options.arm, method=Method(options.method))
-    spent: Counter[str] = Counter()
-    points = 0
-
-    def order_and_count(*arguments: Any, **keywords: Any) -> Any:
-        nonlocal points
-        strokes, is_finished = order(*arguments, **keywords)
-        points = sum(map(len, strokes))
-        return strokes, is_finished
-
-    order = pipeline.ordered
-    pipeline.ordered = order_and_count
-    for name, stage in STAGES.items():
-        module = next(module for module in MODULES if hasattr(module, name))
-        setattr(module, name, _counted(getattr(module, name), stage, spent))
     drawings = sorted(options.folder.glob("*.svg"))
     if not drawings:
         parser.error(f"no .svg files in {options.folder}")
-    columns = [*STAGES.values(), "write", "total"]
-    print("| drawing | points | points/s |" + "".join(f" {column} s |" for column in columns) + " peak MB |")
-    print("|---|" + "---:|" * (len(columns) + 3))
-    pipeline.plan(drawings[0], settings, lambda *_: None)
+    columns = [*STAGES, "whole"]
+    print("| drawing |" + "".join(f" {column} s |" for column in columns))
+    print("|---|" + "---:|" * len(columns))
+    plan(drawings[0], settings, unreported)
     for drawing in drawings:
-        spent.clear()
-        began = time.perf_counter()
         try:
-            planned = pipeline.plan(drawing, settings, lambda *_: None)
+            spent = stages_of(drawing, settings)
         except PlannerError as error:
             print(f"| {drawing.name} | {error} |")
             continue
-        with tempfile.TemporaryDirectory() as folder:
-            wrote = time.perf_counter()
-            write_trajectory(planned.trajectory, Path(folder) / "traj.csv")
-            spent["write"] = time.perf_counter() - wrote
-        spent["total"] = time.perf_counter() - began
-        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
-        times = "".join(f" {spent[column]:.2f} |" for column in columns)
-        print(f"| {drawing.name} | {points} | {points / spent['total']:.0f} |{times} {peak} |", flush=True)
+        print(f"| {drawing.name} |" + "".join(f" {spent[column]:.2f} |" for column in columns), flush=True)
 
 
 if __name__ == "__main__":
