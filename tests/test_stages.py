@@ -7,7 +7,10 @@ from pathlib import Path
 from benchmarks.stages import STAGES, stages_of
 from planner.settings import PlanSettings
 
-TWO_LINES = '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><path d="M5 5 30 8M8 30 30 28"/></svg>'
+TWO_LINES = (
+    '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40">'
+    '<path stroke="black" d="M5 5 30 8M8 30 30 28"/></svg>'
+)
 
 
 def test_every_stage_takes_its_share(tmp_path: Path) -> None:
