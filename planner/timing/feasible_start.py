@@ -8,9 +8,9 @@ from planner.arrays import FloatArray
 from planner.ragged import starts_of
 from planner.timing.discrete_problem import DiscreteProblem
 
-_STEEPEST = 0.1
+_STEEPEST = 0.05
 """Slope of log b, per cell."""
-_USED = 0.7
+_USED = 0.9
 """Share of the limit that is used where a path is closest to one."""
 _APART = 1e3
 """Cells between one path and the next, as far as slopes are concerned: no path has its say on another."""

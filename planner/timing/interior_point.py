@@ -16,9 +16,9 @@ from planner.timing.lowered_limits import lowered_limits
 from planner.timing.newton_system import newton_direction, newton_system
 from planner.timing.per_limit import per_limit
 
-_BOUNDARY = 0.95
+_BOUNDARY = 0.98
 """Share of the way to the nearest limit that a step may go."""
-_CENTRING, _MOST_CENTRING = 0.3, 0.9
+_CENTRING, _MOST_CENTRING = 0.2, 0.9
 """Factors of the barrier with every step: the nearer to the second, the shorter the step before had to be. Smaller ones
 let slacks run dry far from the optimum."""
 _SHORTENED = 0.6

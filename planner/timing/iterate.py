@@ -10,7 +10,7 @@ from planner.arrays import BoolArray, FloatArray
 from planner.timing.discrete_problem import DiscreteProblem
 from planner.timing.per_limit import PerLimit, per_limit
 
-_START_GAP = 3.0
+_START_GAP = 2.0
 """The barrier at the start, in shares of the time. A smaller one lets slacks run dry far from the optimum: steps then
 stay short, and the gap closes before the gradient does."""
 
