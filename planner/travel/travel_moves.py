@@ -59,15 +59,14 @@ _LOW_LIFT = 0.5
 """Share of the lift height that is tried, never below the clearance, where nothing keeps within the joints' ranges."""
 _LITTLE = 1.02
 """What a travel move may be slowed by without a look for another."""
-_TEMPERED = tuple(
-    (
-        *((share, share, 1.0), (share, 1.0, 1.0), (1.0, share, 1.0)),
-        *((1.0, 1.0, 1 / share), (share, 1.0, 1 / share), (1.0, share, 1 / share)),
-    )
-    for share in (0.7, 0.5, 0.35, 0.25, 0.18)
+_SHARES = (0.7, 0.5, 0.35, 0.25, 0.18)
+"""Such a travel move is tried with so much of the limits: one share after the other, as long as that helps."""
+_TEMPERED = (
+    (False, ((1, 1, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1))),
+    (True, ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1))),
 )
-"""Such a travel move is tried with so much of the limits for its height, and for its way, and a handover so many times
-as high as it has to be: one group after the other, as long as that helps."""
+"""What has the share: the jerk of all joints; the limits for the height, and for the way; and the handover is as many
+times as high as it has to be."""
 _SAMPLES_AT_ONCE = 100_000
 _TOO_SLOW = "choose a higher --lowering-speed, a lower --rate or --lift, or raise the limits of the arm's joints"
 _TURN_MARGIN = 0.999
@@ -147,7 +146,7 @@ def _along(kinematics: Kinematics, limits: Limits, rules: TravelRules, shapes: S
     """Travel moves of these shapes, as quick as they may be.
 
     One that has to be slowed, as between samples the tip would leave its way or joints their limits, may be quicker
-    where only its height, or only the way, has less of the limits: what stricter limits allow is a candidate so.
+    where only its height, only the way, or all jerk has less of the limits: what stricter limits allow is a candidate so.
     """
     if not shapes:
         return []
@@ -155,18 +154,27 @@ def _along(kinematics: Kinematics, limits: Limits, rules: TravelRules, shapes: S
     plans = _timed(shapes, slopes, limits, rules)
     moves = _made(kinematics, limits, rules, plans, np.full(len(plans), np.inf))
     slow = np.flatnonzero([_is_slowed(plan, move, rules) for plan, move in zip(plans, moves, strict=True)])
-    for tempers in _TEMPERED:
-        if not len(slow):
-            break
-        one, (height, way, handover) = np.repeat(slow, len(tempers)), np.tile(np.array(tempers).T, len(slow))
-        tempered = slopes.subset(one).steeper(1 / height, 1 / way)
-        sooner_s = np.array([_sooner_s(moves[index], rules) for index in one.tolist()])
-        tried = _timed([shapes[index] for index in one.tolist()], tempered, limits, rules, handover, sooner_s)
-        quick = [k for k, plan in enumerate(tried) if plan.natural_s <= sooner_s[k]]
-        made = _made(kinematics, limits, rules, [tried[k] for k in quick], sooner_s[quick])
-        for index, move in zip(one[quick].tolist(), made, strict=True):
-            moves[index] = min(moves[index], move, key=_preferred)
-        slow = np.array(sorted(set(one[quick].tolist())), dtype=np.int64)
+    for share in _SHARES:
+        helped: set[int] = set()
+        for with_jerk, tempers in _TEMPERED if len(slow) else ():
+            one = np.repeat(slow, len(tempers))
+            height, way, handover = np.tile(share ** np.array(tempers, dtype=float).T, len(slow))
+            less = replace(limits, jerk=share * limits.jerk) if with_jerk else limits
+            sooner_s = np.array([_sooner_s(moves[index], rules) for index in one.tolist()])
+            plans = _timed(
+                [shapes[index] for index in one.tolist()],
+                slopes.subset(one).steeper(1 / height, 1 / way),
+                less,
+                rules,
+                1 / handover,
+                sooner_s,
+            )
+            quick = [k for k, plan in enumerate(plans) if plan.natural_s <= sooner_s[k]]
+            made = _made(kinematics, limits, rules, [plans[k] for k in quick], sooner_s[quick])
+            for index, move in zip(one[quick].tolist(), made, strict=True):
+                moves[index] = min(moves[index], move, key=_preferred)
+            helped.update(one[quick].tolist())
+        slow = np.array(sorted(helped), dtype=np.int64)
     return moves
 
 

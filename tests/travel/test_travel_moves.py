@@ -304,6 +304,23 @@ def test_nor_does_it_where_servos_take_few_samples(name: str, data: st.DataObjec
     assert sum(after) <= sum(before) + len(before)
 
 
+def test_more_jerk_costs_no_time_over_many_moves_where_servos_take_few_samples() -> None:
+    """Moves of millimetres and centimetres, some a sample longer and more of them shorter."""
+    arm = load_once("drawing_arm")
+    random = np.random.default_rng(0)
+    starts = random.uniform([55.0, -50.0], [105.0, 50.0], (30, 2))
+    ways = random.normal(size=(30, 2)) * 10.0 ** random.uniform(-0.5, 1.0, (30, 1))
+    start, end = (contacts(arm, places) for places in (starts, np.clip(starts + ways, [50.0, -60.0], [112.0, 60.0])))
+
+    def lasting(jerk: float) -> IntArray:
+        limits = replace(Limits.of(arm), jerk=jerk * Limits.of(arm).jerk)
+        moves = plan_travel_moves(kinematics_of(arm), limits, rules(50.0), start, end)
+        return np.array([len(one.joints) - 1 for one in moves])
+
+    before, after = lasting(1.0), lasting(5.0)
+    assert after.sum() <= before.sum() and (after <= before + 1).all()
+
+
 @pytest.mark.parametrize("name", DRAWING_ARMS)
 def test_one_limit_of_all_joints_that_is_relaxed_makes_no_travel_move_slower(name: str) -> None:
     """Short ones, as there are most of in a drawing: at a thousand samples a second by two of them at most, for what
