@@ -146,7 +146,7 @@ def _along(kinematics: Kinematics, limits: Limits, rules: TravelRules, shapes: S
     """Travel moves of these shapes, as quick as they may be.
 
     One that has to be slowed, as between samples the tip would leave its way or joints their limits, may be quicker
-    where only its height, only the way, or all jerk has less of the limits: what stricter limits allow is a candidate so.
+    where only its height, only the way, or all jerk has less of the limits: what stricter limits allow is a candidate.
     """
     if not shapes:
         return []
