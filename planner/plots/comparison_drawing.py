@@ -17,7 +17,8 @@ from planner.comparison.targets import Targets
 from planner.counted import counted
 from planner.plots.comparison_look import line_of, method_handles, shown
 from planner.plots.look import LIMIT_DASHES, USUAL, Look
-from planner.plots.paper import base_of, place_axes, view_mm
+from planner.plots.paper import place_axes
+from planner.plots.paper_extent import base_of, view_mm
 from planner.plots.sheet import Sheet
 
 _LEFT, _BOTTOM, _RIGHT, _BETWEEN, _TITLE = 6.2, 4.2, 1.8, 4.0, 1.6  # em

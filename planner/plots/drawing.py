@@ -13,9 +13,11 @@ from planner.drawing.drawing import Drawing
 from planner.drawing.flatten import flatten_all
 from planner.drawing.image.lines import with_images
 from planner.placement.tiling import held_by
-from planner.plots.ink import draw_inks, inks_of, legend_of
+from planner.plots.ink import inks_of
+from planner.plots.inked import draw_inks, legend_of
 from planner.plots.look import USUAL, Look
-from planner.plots.paper import paper_panel, paper_patch, paper_sides_mm, pieces, pt_per_mm_of
+from planner.plots.paper import paper_panel, paper_patch, pieces, pt_per_mm_of
+from planner.plots.paper_extent import paper_sides_mm
 from planner.plots.samples import joined_while_drawing
 from planner.plots.sheet import Sheet
 from planner.trajectory import Trajectory

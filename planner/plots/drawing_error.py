@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from planner.arrays import FloatArray
 from planner.plots.look import USUAL, Look
-from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, place_axes, view_mm
+from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, place_axes
+from planner.plots.paper_extent import view_mm
 from planner.plots.sheet import Sheet
 
 _TAP_MM = 0.02

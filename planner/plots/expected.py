@@ -16,7 +16,8 @@ from planner.error_model.cause import Cause
 from planner.error_model.prediction import Along, Prediction
 from planner.plots.coloured_path import N_LEVELS
 from planner.plots.look import USUAL, Look
-from planner.plots.paper import BASE, PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, pieces, place_axes, view_mm
+from planner.plots.paper import BASE, PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, pieces, place_axes
+from planner.plots.paper_extent import view_mm
 from planner.plots.sheet import Sheet
 
 _95_OF_100 = 1.96

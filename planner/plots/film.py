@@ -13,23 +13,22 @@ from matplotlib.ticker import MultipleLocator
 
 from planner.arrays import BoolArray, FloatArray
 from planner.counted import clock
-from planner.plots.ink import Ink, inks_of, legend_of
+from planner.plots.ink import Ink, inks_of
+from planner.plots.inked import legend_of
 from planner.plots.look import USUAL, Colours, Look
 from planner.plots.motion import Motion, seen_from_the_side
 from planner.plots.paper import (
     PAPER_BOTTOM,
     PAPER_LEFT,
     PAPER_RIGHT,
-    base_of,
     canvas_outline,
     half_ring,
     paper_patch,
-    paper_sides_mm,
     pieces,
     place_axes,
     round_step,
-    view_mm,
 )
+from planner.plots.paper_extent import base_of, paper_sides_mm, view_mm
 from planner.plots.samples import joined_while_drawing
 from planner.plots.sheet import Sheet
 

@@ -6,15 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.collections import EllipseCollection, LineCollection
-from matplotlib.patches import Patch
 
 from planner.arrays import FloatArray, IntArray
 from planner.counted import metres
 from planner.pens import hex_of
-from planner.plots.look import Look
 from planner.plots.samples import joined_while_drawing
 from planner.stroke_figures import TAP_EXTENT_MM, stroke_figures
 from planner.trajectory import TRAVELLING, Trajectory
@@ -25,9 +20,6 @@ _UNNAMED_COLOUR = "#1A1A1A"
 _CELL_MM = 2.0
 _APART = 0.5
 """How much of the distance between lines a line fills at most, where its width is not known."""
-_THINNED_DOT = 2.0
-"""How wide a dot is beside such a line, for it to be seen."""
-_MANY_POINTS = 20_000  # beyond, lines are pixels in SVG and PDF too
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -90,24 +82,6 @@ def usual_width_mm(trajectory: Trajectory, places: FloatArray) -> float:
     closest = np.argsort(apart_mm)
     half = np.searchsorted(np.cumsum(length_mm[closest]), length_mm.sum() / 2)
     return min(USUAL_WIDTH_MM, _APART * float(apart_mm[closest][min(int(half), len(closest) - 1)]))
-
-
-def draw_inks(axes: Axes, inks: Sequence[Ink], pt_per_mm: float, zorder: float = 2.0) -> None:
-    """Lines and taps at their true width on axes of equal scales."""
-    for ink in inks:
-        many = sum(map(len, ink.lines)) > _MANY_POINTS
-        lines = LineCollection(ink.lines, color=ink.colour, linewidth=ink.width_mm * pt_per_mm, capstyle="round")
-        lines.set(zorder=zorder, rasterized=many)
-        axes.add_collection(lines, autolim=False)
-        sizes = np.full(len(ink.taps), _THINNED_DOT * ink.width_mm if ink.is_thinned else ink.width_mm)
-        dots = EllipseCollection(sizes, sizes, 0.0, units="xy", offsets=ink.taps, offset_transform=axes.transData)
-        dots.set(facecolor=ink.colour, edgecolor="none", zorder=zorder)
-        axes.add_collection(dots, autolim=False)
-
-
-def legend_of(inks: Sequence[Ink], look: Look) -> list[Artist]:
-    """A patch for each pen, with an edge, as ink may have the colour of the ground."""
-    return [Patch(facecolor=ink.colour, edgecolor=look.colours.edge, linewidth=0.6, label=ink.label) for ink in inks]
 
 
 def _lines_and_taps(trajectory: Trajectory, places: FloatArray, drawn: IntArray) -> tuple[list[FloatArray], FloatArray]:

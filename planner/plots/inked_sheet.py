@@ -9,9 +9,11 @@ from matplotlib.ticker import MultipleLocator
 
 from planner.arrays import FloatArray
 from planner.counted import counted
-from planner.plots.ink import draw_inks, inks_of, legend_of, thinned
+from planner.plots.ink import inks_of, thinned
+from planner.plots.inked import draw_inks, legend_of
 from planner.plots.look import USUAL, Look
-from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, paper_sides_mm, round_step
+from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, round_step
+from planner.plots.paper_extent import paper_sides_mm
 from planner.plots.sheet import Sheet
 from planner.trajectory import Trajectory
 

@@ -14,13 +14,12 @@ from matplotlib.ticker import MultipleLocator
 from planner.arms.paper_pose import PaperPose
 from planner.arrays import BoolArray, FloatArray
 from planner.plots.look import Colours
+from planner.plots.paper_extent import base_of, view_mm
 from planner.plots.sheet import Sheet
-from planner.trajectory import Trajectory
 
 PAPER_LEFT, PAPER_BOTTOM, PAPER_RIGHT = 5.4, 4.2, 1.8
 """Em around the axes of a paper, for the numbers on them."""
 BASE = "base of the arm"
-_MARGIN_MM = 5.0
 _TICK_EM = 5.5  # a label such as -120, with room beside it
 
 
@@ -49,25 +48,6 @@ def paper_panel(
     if len(canvas):
         axes.add_patch(canvas_outline(canvas, sheet.look.colours))
     return axes
-
-
-def base_of(paper: PaperPose) -> tuple[float, float]:
-    """Where on the paper the base is, seen square to it."""
-    x, y, _ = paper.T_paper_base[:3, 3].tolist()
-    return x, y
-
-
-def view_mm(
-    points: Sequence[FloatArray], reach_mm: tuple[float, float] | None, base_mm: tuple[float, float] | None
-) -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest arm x and y (2,) to show: all points (n, 2), the half ring, the base where it is to be seen,
-    and a margin."""
-    base = np.array([] if base_mm is None else [base_mm]).reshape(-1, 2)
-    ring = [] if reach_mm is None else [base + np.array([[0.0, -reach_mm[1]], [reach_mm[1], reach_mm[1]]])]
-    everything = np.concatenate([*points, *ring, base])
-    low, high = np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)
-    margin = max(0.03 * float((high - low).max()), 5.0)
-    return low - margin, high + margin
 
 
 def place_axes(
@@ -144,16 +124,6 @@ def pt_per_mm_of(sheet: Sheet, axes: Axes) -> float:
     width_em = sheet.width_of(axes)
     across = axes.get_xlim()
     return width_em * sheet.look.letter_pt / abs(across[1] - across[0])
-
-
-def paper_sides_mm(trajectory: Trajectory, xy: FloatArray) -> tuple[float, float, float, float]:
-    """Near, far, right and left side of the paper: what the header tells, or else what the ink needs. xy: (n_samples,
-    2) of the tip."""
-    if trajectory.placement.canvas_mm is not None:
-        return trajectory.placement.canvas_mm
-    ink = xy[trajectory.pen] if trajectory.pen.any() else xy
-    (near, right), (far, left) = ink.min(axis=0) - _MARGIN_MM, ink.max(axis=0) + _MARGIN_MM
-    return float(near), float(far), float(right), float(left)
 
 
 def paper_patch(sides_mm: tuple[float, float, float, float], colours: Colours) -> Rectangle:

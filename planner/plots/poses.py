@@ -10,7 +10,8 @@ from planner.arms.arm import Arm
 from planner.arrays import FloatArray
 from planner.plots.look import USUAL, Look
 from planner.plots.motion import arm_nodes, seen_from_the_side
-from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, base_of, canvas_outline, place_axes, view_mm
+from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, PAPER_RIGHT, canvas_outline, place_axes
+from planner.plots.paper_extent import base_of, view_mm
 from planner.plots.sheet import Sheet
 
 _TITLE, _BETWEEN = 1.6, 2.0

@@ -15,7 +15,8 @@ from matplotlib.ticker import MaxNLocator
 from planner.arms.paper_pose import PaperPose
 from planner.arrays import FloatArray
 from planner.plots.look import LIMIT_DASHES, USUAL, Look
-from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, base_of, canvas_outline, half_ring, place_axes, view_mm
+from planner.plots.paper import PAPER_BOTTOM, PAPER_LEFT, canvas_outline, half_ring, place_axes
+from planner.plots.paper_extent import base_of, view_mm
 from planner.plots.sheet import Sheet
 from planner.settings import CanvasKind
 from planner.workspace.paper_map import PaperMap

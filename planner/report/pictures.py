@@ -19,10 +19,12 @@ from planner.plots.coloured_path import plot_error, plot_speed
 from planner.plots.drawing import plot_drawing
 from planner.plots.expected import plot_expected
 from planner.plots.figure_file import write_figure
-from planner.plots.ink import draw_inks, inks_of
+from planner.plots.ink import inks_of
+from planner.plots.inked import draw_inks
 from planner.plots.inked_sheet import plot_sheet
 from planner.plots.look import Look, Theme
-from planner.plots.paper import paper_patch, paper_sides_mm
+from planner.plots.paper import paper_patch
+from planner.plots.paper_extent import paper_sides_mm
 from planner.plots.profiles import plot_profiles
 from planner.plots.samples import joined_while_drawing
 from planner.plots.timeline import plot_timeline
