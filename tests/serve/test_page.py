@@ -25,11 +25,12 @@ from planner.arms.paper_pose import PaperPose
 from planner.cli import main as command
 from planner.serve.asked import arguments_of
 from planner.trajectory import read_trajectory
+from tests.drawn_shapes import lines_svg
 from tests.serve.served import PAGE, SQUARE, Server
 
 TWO_PENS = (
     b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 60 60" width="60mm" height="60mm" fill="none">'
-    b'<path d="M10 10 H50" stroke="#0050c8"/><path d="M10 30 H50" stroke="#c02000"/></svg>'
+    b'<path d="M10 10 H13" stroke="#0050c8"/><path d="M10 13 H13" stroke="#c02000"/></svg>'
 )
 LAYERS = (
     b'<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" '
@@ -38,6 +39,7 @@ LAYERS = (
     b'<path d="M10 30 H50" stroke="#c02000"/></g><g inkscape:groupmode="layer" inkscape:label="%notes">'
     b'<path d="M10 50 H50" stroke="#208020"/></g></svg>'
 )
+TICK = lines_svg('<path d="M30 30 l2 2"/>', PAGE).encode()
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 PHONE = {"width": 360, "height": 740}
 AXE = resources.files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8")
@@ -81,19 +83,44 @@ def _told(said: ConsoleMessage) -> str:
     return f"{said.text} at {said.location['url']}"
 
 
-@pytest.fixture
-def page(browser: Browser, server: Server) -> Iterator[Page]:
-    """An opened page; what its console complains of fails the test."""
-    opened = browser.new_page(viewport={"width": 1280, "height": 900})
+@pytest.fixture(scope="module")
+def opened(browser: Browser, server: Server) -> Iterator[tuple[Page, list[str]]]:
+    """A page of the browser, and what its console complains of."""
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
     complaints: list[str] = []
-    opened.on("pageerror", lambda error: complaints.append(str(error)))
-    opened.on("console", lambda said: complaints.append(_told(said)) if said.type == "error" else None)
-    opened.on("request", lambda request: complaints.append(request.url) if is_elsewhere(server, request.url) else None)
-    opened.set_default_timeout(SLOW_MS)
-    visit(opened, server)
-    yield opened
-    opened.close()
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.on("console", lambda said: complaints.append(_told(said)) if said.type == "error" else None)
+    page.on("request", lambda request: complaints.append(request.url) if is_elsewhere(server, request.url) else None)
+    page.set_default_timeout(SLOW_MS)
+    yield page, complaints
+    page.close()
+
+
+@pytest.fixture
+def page(opened: tuple[Page, list[str]], server: Server) -> Iterator[Page]:
+    """The page, loaded anew; what its console complains of fails the test."""
+    page, complaints = opened
+    visit(page, server)
+    yield page
+    page.unroute_all()
+    page.goto("about:blank")
     assert not [complaint for complaint in complaints if not _EXPECTED.search(complaint)]
+
+
+@pytest.fixture(scope="module")
+def in_the_hand(browser: Browser) -> Iterator[Page]:
+    page = browser.new_page(viewport=PHONE, color_scheme="dark")
+    page.set_default_timeout(SLOW_MS)
+    yield page
+    page.close()
+
+
+@pytest.fixture
+def phone(in_the_hand: Page, server: Server) -> Iterator[Page]:
+    """The page on a phone where it is dark, loaded anew."""
+    visit(in_the_hand, server)
+    yield in_the_hand
+    in_the_hand.goto("about:blank")
 
 
 def is_elsewhere(server: Server, url: str) -> bool:
@@ -157,6 +184,7 @@ def test_from_a_dropped_drawing_to_a_drawn_one(page: Page, server: Server) -> No
     expect(page.locator("#standing")).to_contain_text("drawing")
     page.click("#stop")
     expect(page.locator("#standing")).to_contain_text("stopped")
+    page.select_option("#speed-factor", "1")
     page.click("#resume")
     expect(page.locator("#standing")).to_contain_text("played")
 
@@ -262,7 +290,7 @@ def test_the_command_is_copied(page: Page) -> None:
 
 
 def test_a_run_is_told_of_its_own_drawing_and_drawn_again(kept: str, page: Page) -> None:
-    give(page)
+    give(page, TICK, "tick.svg")
     plan(page)
     page.click("#run")
     expect(page.locator("#run-says")).to_contain_text("played")
@@ -426,7 +454,7 @@ def test_a_picture_is_dropped_and_drawn(page: Page, server: Server) -> None:
     assert server.get("/api/state")["jobs"][-1]["options"]["image"] == "stipple"
 
 
-def test_joints_are_jogged_and_held_at_once_from_every_page(page: Page, browser: Browser, server: Server) -> None:
+def test_joints_are_jogged_and_held_at_once_from_every_page(page: Page, phone: Page) -> None:
     page.click("text=Jog")
     page.select_option("#jog-arm", "so101")
     page.fill("#jog-target", "found")
@@ -443,11 +471,8 @@ def test_joints_are_jogged_and_held_at_once_from_every_page(page: Page, browser:
     expect(page.locator("#jog-says")).to_have_class("bad")
     page.click("text=Save the arm")
     expect(page.locator("#arm")).to_contain_text("found")
-    other = browser.new_page(viewport=PHONE)
-    visit(other, server)
-    other.locator("#hold").click()
+    phone.locator("#hold").click()
     expect(page.locator("#jog-says")).to_contain_text("holds where it is")
-    other.close()
 
 
 def test_the_calibration_walk_begins_and_leads_on(page: Page) -> None:
@@ -463,17 +488,14 @@ def test_the_calibration_walk_begins_and_leads_on(page: Page) -> None:
     expect(page.locator("#walk-says")).to_have_class("bad")
 
 
-def test_a_second_page_sees_and_stops_what_the_first_began(page: Page, browser: Browser, server: Server) -> None:
+def test_a_second_page_sees_and_stops_what_the_first_began(page: Page, phone: Page) -> None:
     give(page)
     plan(page)
-    other = browser.new_page(viewport=PHONE)
-    visit(other, server)
     page.select_option("#speed-factor", "0.25")  # it is still at it when it is asked to stop
     page.click("#run")
-    expect(other.locator("#standing")).to_contain_text("drawing")
-    other.click("#stop")
+    expect(phone.locator("#standing")).to_contain_text("drawing")
+    phone.click("#stop")
     expect(page.locator("#standing")).to_contain_text("stopped")
-    other.close()
 
 
 def test_what_goes_wrong_is_said(page: Page) -> None:
@@ -488,23 +510,19 @@ def test_what_goes_wrong_is_said(page: Page) -> None:
     expect(page.locator("#plan-says")).to_have_class("bad")
 
 
-@pytest.mark.parametrize(("viewport", "scheme"), [({"width": 1280, "height": 900}, "light"), (PHONE, "dark")])
-def test_people_with_any_senses_can_use_it(
-    browser: Browser, server: Server, kept: str, viewport: Any, scheme: Any
-) -> None:
-    page = browser.new_page(viewport=viewport, color_scheme=scheme)
-    visit(page, server)
+@pytest.mark.parametrize("seen_on", ["page", "phone"])
+def test_people_with_any_senses_can_use_it(request: pytest.FixtureRequest, kept: str, seen_on: str) -> None:
+    page: Page = request.getfixturevalue(seen_on)
     choose(page, kept)
+    page.evaluate(AXE)
     for view in ("#tab-sheet", "#tab-arm", "text=Jog", "text=Calibrate"):
         page.click(view)
         if view == "text=Jog":
             page.click("#jog-start")
             expect(page.locator("#jog-joints li").first).to_be_visible()
-        page.evaluate(AXE)
-        found = page.evaluate("axe.run()")
+        found = page.evaluate("axe.run({ resultTypes: ['violations'] })")
         serious = [fault for fault in found["violations"] if fault["impact"] in ("serious", "critical")]
         assert not serious, json.dumps(serious, indent=1)[:3000]
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), view
     page.click("#hold")
     expect(page.locator("#standing")).not_to_contain_text("jogging")
-    page.close()
