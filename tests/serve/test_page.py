@@ -40,7 +40,13 @@ LAYERS = (
     b'<path d="M10 50 H50" stroke="#208020"/></g></svg>'
 )
 TICK = lines_svg('<path d="M30 30 l2 2"/>', PAGE).encode()
-FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+FLAGS = [
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-gpu-compositing",  # three dimensions alone go through the graphics card that there is not
+]
 PHONE = {"width": 360, "height": 740}
 AXE = resources.files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8")
 SLOW_MS = 60_000
@@ -366,7 +372,7 @@ STANDS = """async (key) => {
   const view = new ArmView(canvas, null);
   view.show(unpacked(film), null);
   view.at(film.end / 2, film.n_samples / 2);
-  await new Promise((done) => setTimeout(done, 500));
+  for (let k = 0; k < 3; k++) await new Promise(requestAnimationFrame); // it is laid out, and then seen
   view.scene.updateMatrixWorld(true);
   const out = (object) => new Vector3(0, 0, 1).transformDirection(object.matrixWorld).toArray();
   const [floor] = view.world.children.filter(({ type }) => type === "GridHelper");
