@@ -29,6 +29,7 @@ FOLDER_VARIABLE = "PLAN_CACHE"
 """Names the folder, or says `off`."""
 OFF = "off"
 _MOST_FILES = 200
+"""Those that nobody has asked for for the longest time make room for new ones."""
 _CHECKSUM_BYTES = 16
 
 Arrays = Mapping[str, FloatArray]
@@ -55,6 +56,8 @@ def _kept(
     file = folder / f"{_digest(question)}.kept"
     found = _read(file)
     if found is not None:
+        with suppress(OSError):
+            os.utime(file)  # it goes after those that nobody has asked for as long
         return unpacked(found)
     answered = answer()
     with suppress(OSError, OutputError, ValueError):

@@ -122,6 +122,18 @@ def test_only_so_many_files_are_kept(folder: Path, monkeypatch: pytest.MonkeyPat
     assert last.times == 0
 
 
+def test_what_is_asked_for_again_and_again_stays(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_MOST_FILES", 3)
+    often = Asked()
+    for number in range(6):
+        kept("often?", often)
+        kept(f"number {number}?", Asked())
+        for file in folder.iterdir():
+            age = file.stat().st_mtime - 100
+            os.utime(file, (age, age))
+    assert often.times == 1
+
+
 def test_plans_are_the_same_with_and_without_what_is_kept(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -110,7 +110,7 @@ def test_an_arm_without_redundancy_is_calibrated_too(tmp_path: Path, monkeypatch
     true = random_arm(arm, np.random.default_rng(2))
     Path("arm.toml").write_text(arm_toml(arm))
     Path("drawing.svg").write_text(DRAWING)
-    assert main(["pattern", "--arm", "arm.toml", "-o", "pattern.csv", "--marks", "marks.csv", "--count", "25"]) == 0
+    assert main(["pattern", "--arm", "arm.toml", "-o", "pattern.csv", "--marks", "marks.csv", "--count", "16"]) == 0
     assert main(["run", "pattern.csv", "--fast", "--record", "pulses.csv", "--quiet"]) == 0
     write_marks(read_record(Path("pulses.csv")), Path("marks.csv"), Path("measured.csv"), true, 2)
     assert main(["calibrate", "arm.toml", "--record", "pulses.csv", "--marks", "measured.csv", "-o", "arm2.toml"]) == 0
@@ -133,7 +133,7 @@ def test_photos_of_two_sheets_make_an_arm_draw_whole_lines(
     for k, arm in enumerate(("drawing_arm_2022", "arm1.toml")):
         sheet = Sheet(f"sheet{k}")
         pattern, marks, pdf, pulses, photo, measured_marks = map(sheet.file, FILES)
-        made = ("-o", pattern, "--marks", marks, "--sheet", pdf, "--seed", k, "--count", 30, "--quiet")
+        made = ("-o", pattern, "--marks", marks, "--sheet", pdf, "--seed", k, "--count", 22, "--quiet")
         command("pattern", "--arm", arm, *made)
         command("run", pattern, "--arm", arm, "--fast", "--record", pulses, "--quiet")
         if not k:

@@ -52,9 +52,10 @@ def moved(servos: list[LimitedServo], told: Floats, rate_hz: float) -> Floats:
     )
     pole, before = 2 / lag_s, np.array([servo.lags_before for servo in servos])
     late_s = np.clip(np.arange(n_steps)[:, None] * _STEP_S - latency_s, 0.0, None)
-    splines = [CubicSpline(np.arange(len(told)) * each_s, one) for one in told.T]
+    ways, which = np.unique(told.T, axis=0, return_inverse=True)  # many servos may be told the same
+    splines = [CubicSpline(np.arange(len(told)) * each_s, way) for way in ways]
     goals, goal_speeds, goal_changes = (
-        np.stack([spline(late, order) for spline, late in zip(splines, late_s.T, strict=True)], axis=1)
+        np.stack([splines[way](late, order) for way, late in zip(which.tolist(), late_s.T, strict=True)], axis=1)
         for order in range(3)
     )
     at, held, seen, lagging = (told[0].copy() for _ in range(4))
