@@ -697,10 +697,10 @@ def test_ctrl_c_lifts_the_pen_and_ends_with_130(tmp_path: Path, number: int) -> 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="looks into /proc")
 def test_a_second_ctrl_c_stops_at_once(tmp_path: Path) -> None:
     path = tmp_path / "long.csv"
-    write_trajectory(_sweep(6.0), path)
+    write_trajectory(_sweep(3.0), path)
     process = _start("run", str(path))
     _wait_until_playing(process)
-    time.sleep(4.0)  # on the paper, and far enough from the park pose for the way back to take a while
+    time.sleep(2.2)  # on the paper, and far enough from the park pose for the way back to take a while
     process.send_signal(signal.SIGINT)
     time.sleep(0.1)
     process.send_signal(signal.SIGINT)
