@@ -106,6 +106,7 @@ def opened(browser: Browser, server: Server) -> Iterator[tuple[Page, list[str]]]
 def page(opened: tuple[Page, list[str]], server: Server) -> Iterator[Page]:
     """The page, loaded anew; what its console complains of fails the test."""
     page, complaints = opened
+    complaints.clear()
     visit(page, server)
     yield page
     page.unroute_all()
