@@ -33,7 +33,7 @@ def test_from_a_pattern_to_an_arm_that_draws_better(tmp_path: Path) -> None:
         server.post("/api/calibration", {"arm": "so101", "count": 3})
         assert "number of marks" in walk(server)["error"]
 
-        server.post("/api/calibration", {"arm": "drawing_arm_2022", "count": 16})
+        server.post("/api/calibration", {"arm": "drawing_arm_2022", "count": 25})
         assert walk(server)["has"] == ["pattern"]
         assert server.answer("GET", "/api/calibration/sheet")[2].startswith(b"%PDF")
         server.post("/api/calibration/run", {"fast": True})
@@ -48,7 +48,7 @@ def test_from_a_pattern_to_an_arm_that_draws_better(tmp_path: Path) -> None:
         assert photo(server, (tmp_path / "calibration" / "photo.jpg").read_bytes(), bar="150")[0] == 202
         measured = walk(server)
         assert measured["has"][-1] == "measure", measured["error"]
-        assert "of 16 marks found" in measured["said"]["measure"][0]
+        assert "of 25 marks found" in measured["said"]["measure"][0]
         assert server.answer("GET", "/api/calibration/reading")[2].startswith(b"\x89PNG")
 
         assert "already" in server.post("/api/calibration/calibrate", {"target": "so101"}, status=400)["error"]
