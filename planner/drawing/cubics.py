@@ -20,8 +20,8 @@ def at(control: FloatArray, t: FloatArray) -> FloatArray:
 
 
 def velocity(control: FloatArray, t: FloatArray) -> FloatArray:
-    """The derivatives (n, 2) of cubics (n, 4, 2) at parameters (n, 1)."""
-    d0, d1, d2 = np.moveaxis(np.diff(control, axis=1), 1, 0)
+    """The derivatives (..., 2) of cubics (..., 4, 2) at parameters (..., 1)."""
+    d0, d1, d2 = np.moveaxis(np.diff(control, axis=-2), -2, 0)
     s = 1.0 - t
     slope: FloatArray = 3.0 * (s * s * d0 + 2.0 * s * t * d1 + t * t * d2)
     return slope

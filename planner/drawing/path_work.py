@@ -113,13 +113,14 @@ def _doubled(dense: _Dense, within_mm: float) -> BoolArray:
     from scipy.spatial import cKDTree  # heavy, and few ask for it
 
     tree = cKDTree(dense.points_mm)
+    reach_mm = float(np.hypot(within_mm, 0.5 * dense.spacing_mm))
     is_double = np.zeros(len(dense.points_mm), dtype=np.bool_)
     for begin in range(0, len(is_double), _AT_ONCE):
-        block = np.arange(begin, min(begin + _AT_ONCE, len(is_double)))
-        reached = tree.query_ball_point(dense.points_mm[block], float(np.hypot(within_mm, 0.5 * dense.spacing_mm)))
-        near = [np.array(found, dtype=np.int64) for found in reached]
-        point = np.repeat(block, [len(found) for found in near])
-        other = np.concatenate(near)
+        block = cKDTree(dense.points_mm[begin : begin + _AT_ONCE])
+        near = block.sparse_distance_matrix(tree, reach_mm, output_type="ndarray")
+        near = near[near["j"] < begin + near["i"]]
+        near = near[np.argsort(near["i"], kind="stable")]  # what is dropped drops nothing after it
+        point, other = begin + near["i"], near["j"]
         same = owner[point] == owner[other]
         apart = np.abs(dense.along_mm[point] - dense.along_mm[other]) > 2.0 * _FEWEST * within_mm
         parallel = np.abs((dense.direction[point] * dense.direction[other]).sum(axis=1)) >= _PARALLEL
@@ -127,7 +128,7 @@ def _doubled(dense: _Dense, within_mm: float) -> BoolArray:
         # Between two points the other line is nearer than to either of them: what counts is how far it passes by.
         gone = dense.points_mm[point] - dense.points_mm[other]
         gone_by = np.hypot(*(gone - (gone * dense.direction[other]).sum(axis=1)[:, None] * dense.direction[other]).T)
-        is_earlier = (other < point) & (~same | apart) & (parallel | both_taps) & (gone_by <= within_mm)
+        is_earlier = (~same | apart) & (parallel | both_taps) & (gone_by <= within_mm)
         for at, before in zip(point[is_earlier].tolist(), other[is_earlier].tolist(), strict=True):
             if not is_double[before]:
                 is_double[at] = True

@@ -100,9 +100,7 @@ def _between_slowest(control: FloatArray) -> tuple[IntArray, FloatArray, FloatAr
 def _length(control: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
     """The lengths (n,) of cubics between parameters (n,)."""
     half = 0.5 * (end - start)
-    length = np.zeros(len(control))
-    for node, weight in zip(_NODES, _WEIGHTS, strict=True):
-        t = start + half * (1.0 + node)
-        length += weight * np.hypot(*velocity(control, t[:, np.newaxis]).T)
-    result: FloatArray = half * length
-    return result
+    t = start[:, np.newaxis] + half[:, np.newaxis] * (1.0 + _NODES)
+    speed = np.hypot(*np.moveaxis(velocity(control[:, np.newaxis], t[:, :, np.newaxis]), 2, 0))
+    length: FloatArray = half * (speed * _WEIGHTS).sum(axis=1)
+    return length
