@@ -68,8 +68,10 @@ def test_all_sheets_together_are_the_drawing_and_hold_nothing_twice(lines: list[
     place, tiling = placed_whole(drawing_of(lines), CANVAS, how)
     whole = [line @ place.svg_to_arm[:, :2].T + place.svg_to_arm[:, 2] for line in lines]
     held = tiling.cut(whole)
+    everything: list[FloatArray] = []
     for tile in tiles_of(tiling):
         pieces = held.pop((tile.column, tile.row), [])
+        everything += [piece - tile.shift_mm for piece in pieces]
         near, far, right, left = tile.window_mm
         for piece in pieces:
             assert (piece >= (near - _OVER_MM, right - _OVER_MM)).all()
@@ -79,11 +81,6 @@ def test_all_sheets_together_are_the_drawing_and_hold_nothing_twice(lines: list[
         length_mm = sum(map(polyline_length, held_by(tile, [line + tile.shift_mm for line in whole])))
         assert abs(length_mm - sum(map(polyline_length, pieces))) < _OVER_MM * (1 + sum(map(len, lines)))
     assert not held
-    everything = [
-        piece - tile.shift_mm
-        for tile in tiles_of(tiling)
-        for piece in tiling.cut(whole).get((tile.column, tile.row), [])
-    ]
     assert sum(map(polyline_length, everything)) == pytest.approx(sum(map(polyline_length, whole)), abs=1e-6)
     assert sum(len(piece) == 1 for piece in everything) == sum(len(line) == 1 for line in lines)
     for line in whole:
