@@ -25,7 +25,10 @@ BODY = (
 KINDS = (PlotKind.DRAWING, PlotKind.SPEED, PlotKind.TIMELINE, PlotKind.SHEET)
 
 
-def test_lengths_speeds_and_times_are_the_same_everywhere(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_lengths_speeds_and_times_are_the_same_everywhere(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("planner.report.pictures.write_figure", lambda *_: None)  # pixels tell no figures
     drawing, target, report = tmp_path / "d.svg", tmp_path / "t.csv", tmp_path / "report"
     drawing.write_text(lines_svg(BODY, 'viewBox="0 0 80 50"'))
     planning = [str(drawing), "--by", "colour", "--dwell", "0.3"]

@@ -33,6 +33,8 @@ def joined(parts: Iterable[str], separator: str = "") -> Markup:
 
 def clean(text: str) -> str:
     """`text` without the characters that a page may not hold, as names of files can."""
+    if text.isprintable():  # as pictures of megabytes are
+        return text
     return "".join(
         character if character.isprintable() or character in "\n\t" else "\N{REPLACEMENT CHARACTER}"
         for character in text
