@@ -9,12 +9,14 @@ import numpy as np
 
 from planner.arrays import BoolArray, FloatArray, IntArray
 from planner.placement.segments import Segments, to_segments
-from planner.ragged import starts_of
+from planner.ragged import starts_of, within
 
 _GAP_MM = 1e4
 _STEPS = 3
 """Steps along a polyline towards the point that is nearest: each goes as far as its segment says."""
 _LONGEST_STEP_MM = 0.5
+_AT_ONCE = 100_000
+"""Segments about that are measured together."""
 _OWN_PASS = 4.0
 """Times the distance from which on figures are exact: a curve passes a vertex with points that have their feet so near
 to it."""
@@ -108,12 +110,18 @@ class Polylines:
     ) -> tuple[FloatArray, FloatArray]:
         """Feet and distances as `feet` has them, but exact above a distance."""
         foot_mm, distance = self.feet(points_mm, near_mm, line)
-        for index in np.flatnonzero(distance > exact_above_mm).tolist():
-            reach = 2.0 * float(distance[index])
-            low, high = np.searchsorted(self.arc_mm, foot_mm[index] + np.array([-reach, reach])).tolist()
-            low, high = max(low - 1, int(self.first[line[index]])), min(high + 1, int(self.last[line[index]]) + 1)
-            piece = self.points_mm[low:high]
-            distance[index] = min(distance[index], to_segments(points_mm[index], piece[:-1], piece[1:]).min())
+        far = np.flatnonzero(distance > exact_above_mm)
+        if not len(far):
+            return foot_mm, distance
+        reach, of = 2.0 * distance[far], line[far]
+        low = np.maximum(np.searchsorted(self.arc_mm, foot_mm[far] - reach) - 1, self.first[of])
+        counts = np.minimum(np.searchsorted(self.arc_mm, foot_mm[far] + reach), self.last[of]) - low
+        cuts = np.flatnonzero(np.diff(np.cumsum(counts) // _AT_ONCE)) + 1
+        for some, begin, n_segments in zip(*(np.split(each, cuts) for each in (far, low, counts)), strict=True):
+            segment = np.repeat(begin, n_segments) + within(n_segments)
+            point = np.repeat(points_mm[some], n_segments, axis=0)
+            gap = to_segments(point, self.points_mm[segment], self.points_mm[segment + 1])
+            distance[some] = np.minimum(distance[some], np.minimum.reduceat(gap, starts_of(n_segments)[:-1]))
         return foot_mm, distance
 
     def deviations(
