@@ -24,7 +24,10 @@ from planner.drawing.options import ReadingOptions
 from planner.drawing.order import order_strokes, travel
 from planner.drawing.svg import read_drawing
 from planner.errors import DoesNotFit, DrawingError, TargetOutOfReach, UnknownArm, UsageError
+from planner.execution import work_chunks
 from planner.head import LeftOut
+from planner.inverse_kinematics.stroke_configurations import InfeasiblePath
+from planner.motion.timed_stroke import TimedStroke
 from planner.pipeline import Plan, placed_strokes, plan
 from planner.placement import pieces
 from planner.settings import CanvasKind, Method, PlaceKind, PlanSettings
@@ -363,8 +366,17 @@ def test_far_too_long_drawings_are_refused_before_all_of_it_is_timed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(pen_drawing, "_MANY_CHUNKS", 2)
-    monkeypatch.setattr(pen_drawing, "require_bounded", partial(require_bounded, most_samples=1500))
-    walk = np.cumsum(np.random.default_rng(3).normal(size=(1500, 2)), axis=0)
+    monkeypatch.setattr(pen_drawing, "_FORETELLING", 1)
+    monkeypatch.setattr(work_chunks, "_CHUNK_WORK", 1000.0)
+    monkeypatch.setattr(pen_drawing, "require_bounded", partial(require_bounded, most_samples=300))
+    timed: list[work_chunks.StrokeChunk] = []
+
+    def counted(chunk: work_chunks.StrokeChunk) -> list[TimedStroke | InfeasiblePath]:
+        timed.append(chunk)
+        return work_chunks.timed_strokes(chunk)
+
+    monkeypatch.setattr(pen_drawing, "timed_strokes", counted)
+    walk = np.cumsum(np.random.default_rng(3).normal(size=(600, 2)), axis=0)
     drawing = tmp_path / "walk.svg"
     drawing.write_text(svg_of([polyline(*walk.tolist())]))
     told: list[tuple[str, int, int]] = []
@@ -375,6 +387,7 @@ def test_far_too_long_drawings_are_refused_before_all_of_it_is_timed(
             lambda *progress: told.append(progress),
         )
     assert max(done for stage, done, _ in told if stage == "drawing motions") == 0
+    assert len(timed) == 1  # of six
 
 
 def test_strokes_are_ordered_by_the_time_of_the_arms_travel(tmp_path: Path) -> None:
