@@ -133,19 +133,21 @@ def _alive(process: int) -> bool:
 @pytest.fixture
 def planning(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], set[int]]]:
     """A long plan by two workers, in the middle of its work, and its processes."""
-    drawing = scribbles(tmp_path / "long.svg", 400, 100)
+    drawing = scribbles(tmp_path / "long.svg", 60, 100)
     process = subprocess.Popen(
-        [sys.executable, "-m", "planner.cli", str(drawing), "-o", str(tmp_path / "long.csv"), "--workers", "2"],
+        [sys.executable, "-m", "planner.cli", str(drawing), "-o", str(tmp_path / "long.csv"), "--workers", "2", "--events"],
         cwd=ROOT,
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         start_new_session=True,
     )
+    assert process.stdout is not None
+    assert any('"drawing motions"' in line for line in process.stdout)
     deadline = time.monotonic() + 30
     while len(_children(process.pid)) < 3 and time.monotonic() < deadline:  # two, and the tracker of their resources
         time.sleep(0.05)
-    time.sleep(2.0)
+    time.sleep(0.3)
     yield process, _children(process.pid)
     process.kill()
     process.communicate()
