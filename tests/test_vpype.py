@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import vpype_cli
+from click.testing import CliRunner
 
 from planner.trajectory import read_trajectory
 
@@ -60,8 +62,17 @@ def test_a_pipeline_ends_in_a_trajectory(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("wrong", [["-x", "margn=1cm"], ["--arm", "nobody"], ["-x", "margin=1m"], ["-x", "tile"]])
-def test_what_plan_refuses_ends_the_pipeline(tmp_path: Path, wrong: list[str]) -> None:
-    done = piped([*VPYPE, *PICTURE, "arm", *wrong, "t.csv"], folder=tmp_path)
+def test_what_plan_refuses_ends_the_pipeline(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wrong: list[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(vpype_cli.cli, [*PICTURE, "arm", *wrong, "t.csv"])
+    assert done.exit_code and isinstance(done.exception, SystemExit) and "Error: " in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_pipeline_that_plan_refuses_ends_without_a_traceback(tmp_path: Path) -> None:
+    done = piped([*VPYPE, *PICTURE, "arm", "--arm", "nobody", "t.csv"], folder=tmp_path)
     assert done.returncode and "Traceback" not in done.stderr and "Error: " in done.stderr
     assert not list(tmp_path.iterdir())
 
