@@ -35,24 +35,28 @@ sys.meta_path[sys.meta_path.index(PathFinder)] = Alone
 """
 """The environment that runs the tests has the packages too: they are looked for in the folders of the test alone."""
 START = f"{ALONE}\nfrom drawing_arm_planner.command import main\nsys.exit(main())"
+BESIDE = {name: value for name, value in os.environ.items() if name != "PYTHONPYCACHEPREFIX"}
 SVG = lines_svg('<path d="M2 2 5 4"/>', 'viewBox="0 0 9 9"')
 
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder as pip leaves it: the packages, and the record of what belongs to the distribution."""
+    """A folder as pip leaves it: the packages, the record of what belongs to the distribution, and compiled what
+    commands need, which would take longer than all else that they do here."""
     site = tmp_path_factory.mktemp("site")
     for package, source in zip(PACKAGES, ("planner", "hardware", "planner/entry"), strict=True):
         shutil.copytree(ROOT / source, site / package, ignore=shutil.ignore_patterns("__pycache__", "configs"))
     shutil.copytree(ROOT / "configs", site / "planner/configs")
     record(site, "drawing_arm_planner", PACKAGES)
+    for command in ("--help", "arm", "ports"):
+        run(site, command, compiled="")
     return site
 
 
 @pytest.fixture
 def site(sound: Path, tmp_path: Path) -> Path:
     copy = tmp_path / "site"
-    shutil.copytree(sound, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(sound, copy)
     return copy
 
 
@@ -69,12 +73,15 @@ def record(site: Path, name: str, packages: tuple[str, ...]) -> None:
     (info / "RECORD").write_text("".join(rows))
 
 
-def run(site: Path, *arguments: str, first: Path | None = None) -> subprocess.CompletedProcess[str]:
-    """The console script of that folder. first: a folder that Python searches before it."""
+def run(
+    site: Path, *arguments: str, first: Path | None = None, compiled: str = "1"
+) -> subprocess.CompletedProcess[str]:
+    """The console script of that folder. first: a folder that Python searches before it. compiled: empty where modules
+    are to be kept compiled, beside their sources."""
     path = os.pathsep.join(str(folder) for folder in (first, site) if folder)
     return subprocess.run(
         [sys.executable, "-c", START, *arguments],
-        env={**os.environ, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1"},
+        env={**BESIDE, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": compiled},
         cwd=site.parent,
         capture_output=True,
         text=True,
@@ -194,7 +201,7 @@ def test_an_import_from_a_damaged_installation_says_so_too(site: Path) -> None:
     remove("planner/api")(site)
     ended = subprocess.run(
         [sys.executable, "-c", f"{ALONE}\nfrom planner import plan"],
-        env={**os.environ, "PYTHONPATH": str(site)},
+        env={**BESIDE, "PYTHONPATH": str(site)},
         cwd=site.parent,
         capture_output=True,
         text=True,
