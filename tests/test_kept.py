@@ -140,7 +140,7 @@ def test_plans_are_the_same_with_and_without_what_is_kept(
     monkeypatch.chdir(tmp_path)
     Path("d.svg").write_text(DRAWING)
     for name, more in (("none.csv", ("--no-cache",)), ("first.csv", ()), ("second.csv", ())):
-        assert main(["d.svg", "-o", name, "--quiet", *more]) == 0
+        assert main(["d.svg", "-o", name, "--quiet", "--arm", "scara", *more]) == 0
         assert folder.exists() is (name != "none.csv")
     written = {Path(name).read_bytes() for name in ("none.csv", "first.csv", "second.csv")}
     assert len(written) == 1
@@ -150,9 +150,9 @@ def test_what_is_to_keep_nothing_keeps_nothing(folder: Path, tmp_path: Path, mon
     monkeypatch.setattr("planner.report.pictures.write_figure", lambda *_: None)  # of no use to what is kept
     drawing = tmp_path / "d.svg"
     drawing.write_text(lines_svg('<path d="M20 30h9"/>', 'viewBox="0 0 60 60"'))
-    planner.plan(drawing, cache=False)
+    planner.plan(drawing, "scara", cache=False)
     assert not folder.exists()
-    report = ["--report", str(tmp_path / "report")]
+    report = ["--arm", "scara", "--report", str(tmp_path / "report")]
     assert main([str(drawing), "-o", str(tmp_path / "d.csv"), "--quiet", "--no-cache", *report]) == 0
     assert not folder.exists()
 
@@ -163,7 +163,7 @@ def test_the_second_plan_of_an_arm_computes_no_map(folder: Path, tmp_path: Path)
         "import sys; from planner.redundancy import arm_model; from planner.cli import main\n"
         "assert arm_model.ring_branches\n"
         "if sys.argv[1] == 'second': arm_model.ring_branches = None\n"
-        "sys.exit(main(['d.svg', '-o', sys.argv[1] + '.csv', '--quiet']))"
+        "sys.exit(main(['d.svg', '-o', sys.argv[1] + '.csv', '--quiet', '--arm', 'scara']))"
     )
     for name in ("first", "second"):
         subprocess.run([sys.executable, "-c", script, name], cwd=tmp_path, check=True, env={**os.environ})
