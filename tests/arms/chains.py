@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from planner.arms.arm import Arm, Coupling, Joint, JointKind, Pen, PenHold, Workspace
 from planner.arms.arm_file import arms_folder, load_arm, read_arm_file
 from planner.arms.rigid_transform import IDENTITY, RigidTransform
-from planner.arrays import FloatArray
+from planner.arrays import FloatArray, frozen
 from planner.inverse_kinematics.nlp import NlpSolver
 from planner.inverse_kinematics.references import References, references_of
 from planner.kinematics.chain import Kinematics
@@ -65,13 +65,14 @@ def dh_frames(arm: Arm, joints: FloatArray) -> list[FloatArray]:
     return frames
 
 
+@lru_cache
 def transform_matrix(transform: RigidTransform) -> FloatArray:
-    """Its turns about fixed axes, roll first, and then its shift."""
+    """Its turns about fixed axes, roll first, and then its shift; read only."""
     matrix = np.eye(4)
     angles = (transform.roll_rad, transform.pitch_rad, transform.yaw_rad)
     matrix[:3, :3] = Rotation.from_euler("xyz", angles).as_matrix()
     matrix[:3, 3] = transform.x_mm, transform.y_mm, transform.z_mm
-    return matrix
+    return frozen(matrix)
 
 
 def tips_by_product(arm: Arm, joints: FloatArray) -> FloatArray:

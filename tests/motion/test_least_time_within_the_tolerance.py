@@ -70,19 +70,23 @@ def test_a_faster_pen_makes_no_stroke_slower(rate_hz: float, stroke: FloatArray)
         assert loose <= (1 + _TIMING) * tight + 1 / rate_hz
 
 
+def spiral(count: int) -> FloatArray:
+    turn = np.linspace(0.0, 6 * np.pi, count)
+    size = np.linspace(4.0, 25.0, count)[:, None]
+    return np.array([75.0, 0.0]) + size * np.column_stack((0.7 * np.cos(turn), np.sin(turn)))
+
+
+@cache
+def smoothest_spiral_s() -> float:
+    return duration_s(context_of(0.05), spiral(20_000))
+
+
 @pytest.mark.parametrize("noise_mm", [0.0, 1e-4, 2e-3])
 @pytest.mark.parametrize("points", [300, 1200, 4800])
 def test_points_and_noise_below_the_tolerance_cost_no_time(points: int, noise_mm: float) -> None:
     """A spiral through few points or many, exact or with noise, against its smoothest form."""
-
-    def spiral(count: int) -> FloatArray:
-        turn = np.linspace(0.0, 6 * np.pi, count)
-        size = np.linspace(4.0, 25.0, count)[:, None]
-        return np.array([75.0, 0.0]) + size * np.column_stack((0.7 * np.cos(turn), np.sin(turn)))
-
-    context = context_of(0.05)
     noise = np.random.default_rng(1).uniform(-noise_mm, noise_mm, (points, 2))
-    assert duration_s(context, spiral(points) + noise) <= 1.02 * duration_s(context, spiral(20_000))
+    assert duration_s(context_of(0.05), spiral(points) + noise) <= 1.02 * smoothest_spiral_s()
 
 
 @pytest.mark.parametrize("rate_hz", [50.0, 100.0, 250.0])

@@ -39,11 +39,11 @@ def dense(line: FloatArray, step_mm: float) -> FloatArray:
     return np.concatenate(pieces)
 
 
-def furthest_mm(points: FloatArray, line: FloatArray) -> float:
-    """Largest distance from any of the points to the polyline."""
+def are_within(points: FloatArray, line: FloatArray, distance_mm: float) -> bool:
+    """Whether all points are so near to the polyline: sooner told than how near they are."""
     shape = shapely.LineString(line)
     shapely.prepare(shape)
-    return float(shapely.distance(shape, shapely.points(points)).max())
+    return bool(shapely.dwithin(shape, shapely.points(points), distance_mm).all())
 
 
 def assert_follows(line: FloatArray, tolerance_mm: float = TOLERANCE_MM) -> PenPaths:
@@ -52,8 +52,8 @@ def assert_follows(line: FloatArray, tolerance_mm: float = TOLERANCE_MM) -> PenP
     extent = float(np.abs(line).max())
     step_mm = max(tolerance_mm, float(np.hypot(*np.diff(line, axis=0).T).sum()) / 4000)
     np.testing.assert_allclose(trace[[0, -1]], line[[0, -1]], rtol=0, atol=1e-12 * max(extent, 1.0))
-    assert furthest_mm(trace, line) <= 1.002 * tolerance_mm
-    assert furthest_mm(dense(line, step_mm), trace) <= 1.002 * tolerance_mm
+    assert are_within(trace, line, 1.002 * tolerance_mm)
+    assert are_within(dense(line, step_mm), trace, 1.002 * tolerance_mm)
     return paths
 
 

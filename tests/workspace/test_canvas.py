@@ -155,9 +155,8 @@ def test_no_rectangle_of_a_grid_is_much_larger_than_the_usable_canvas(arm: Arm) 
     largest = 0.0
     for first in range(len(x)):
         for last in range(first + 1, len(x)):
-            columns = np.flatnonzero(inside[first : last + 1].all(axis=0))
-            runs = np.split(columns, np.flatnonzero(np.diff(columns) > 1) + 1)
-            longest = max(len(run) for run in runs) - 1
+            outside = np.flatnonzero(np.pad(~inside[first : last + 1].all(axis=0), 1, constant_values=True))
+            longest = int(np.diff(outside).max()) - 2
             largest = max(largest, longest * (y[1] - y[0]) * (x[last] - x[first]))
     assert 0.0 < largest <= 1.01 * area_mm2(usable_canvas(model_of(arm), 5.0))
 
