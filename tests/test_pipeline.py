@@ -93,11 +93,10 @@ def runs(trajectory: Trajectory, tips_mm: FloatArray) -> list[FloatArray]:
 
 def furthest_mm(points: FloatArray, lines: list[FloatArray]) -> float:
     """Largest distance from any of the points to the nearest of the lines."""
-    nearest = np.full(len(points), np.inf)
-    for line in lines:
-        shape = shapely.LineString(line) if len(np.unique(line, axis=0)) > 1 else shapely.Point(line[0])
-        shapely.prepare(shape)
-        nearest = np.minimum(nearest, shapely.distance(shape, shapely.points(points)))
+    pieces = [np.stack((line[:-1], line[1:]) if len(line) > 1 else (line, line), axis=1) for line in lines]
+    tree = shapely.STRtree(shapely.linestrings(np.concatenate(pieces)))
+    _, nearest = tree.query_nearest(shapely.points(points), return_distance=True, all_matches=False)
+    assert len(nearest) == len(points)
     return float(nearest.max())
 
 

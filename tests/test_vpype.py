@@ -62,9 +62,7 @@ def test_a_pipeline_ends_in_a_trajectory(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("wrong", [["-x", "margn=1cm"], ["--arm", "nobody"], ["-x", "margin=1m"], ["-x", "tile"]])
-def test_what_plan_refuses_ends_the_pipeline(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wrong: list[str]
-) -> None:
+def test_what_plan_refuses_ends_the_pipeline(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, wrong: list[str]) -> None:
     monkeypatch.chdir(tmp_path)
     done = CliRunner().invoke(vpype_cli.cli, [*PICTURE, "arm", *wrong, "t.csv"])
     assert done.exit_code and isinstance(done.exception, SystemExit) and "Error: " in done.stderr

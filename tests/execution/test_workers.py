@@ -135,7 +135,17 @@ def planning(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], set[int]]]
     """A long plan by two workers, in the middle of its work, and its processes."""
     drawing = scribbles(tmp_path / "long.svg", 60, 100)
     process = subprocess.Popen(
-        [sys.executable, "-m", "planner.cli", str(drawing), "-o", str(tmp_path / "long.csv"), "--workers", "2", "--events"],
+        [
+            sys.executable,
+            "-m",
+            "planner.cli",
+            str(drawing),
+            "-o",
+            str(tmp_path / "long.csv"),
+            "--workers",
+            "2",
+            "--events",
+        ],
         cwd=ROOT,
         text=True,
         stdout=subprocess.PIPE,
