@@ -88,6 +88,7 @@ def test_examples_are_accepted(made: Plan, tmp_path: Path, monkeypatch: pytest.M
     """What is planned is a plan that is there already: options are read, files written, and pictures drawn."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(planner.pipeline, "plan", lambda *_, **__: made)
+    monkeypatch.setattr("planner.tiled_plan.planned", lambda *_, **__: made)
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "preferences"))
     (tmp_path / "plan.toml").write_text('[presets.fast]\nspeed = "8cm/s"\n')
     for name in ("flower", "city", "letter", "stamp", "poster", "map", "logo", "drawings/one"):
