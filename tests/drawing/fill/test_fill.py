@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from shapely import LineString, MultiLineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
@@ -67,6 +67,17 @@ rings = st.lists(st.lists(corners, min_size=3, max_size=8), min_size=1, max_size
     st.none() | st.just(0.0) | st.floats(0.01, 2.0),
     st.floats(-180.0, 180.0),
 )
+@example(
+    [
+        [(8.0, 8.0), (81.0, 60.0), (85.6875, 35.25), (62.0, 92.0)],
+        [(8.0, 16.0), (19.3125, 22.71875), (91.96875, 66.0390625)],
+    ],
+    "evenodd",
+    FillKind.HATCH,
+    1.0,
+    None,
+    0.0,
+)
 def test_any_area_is_covered_and_nothing_else(
     drawn: list[list[tuple[float, float]]], rule: str, kind: FillKind, spacing: float, inset: float | None, angle: float
 ) -> None:
@@ -78,7 +89,8 @@ def test_any_area_is_covered_and_nothing_else(
     assume(area.area > 1.0)
     inner = area.buffer(-options.from_edge_mm)
     lines = inked(on_paper(read(f'<path fill-rule="{rule}" d="{path}"/>'), options))
-    assert lines.difference(inner.buffer(1e-3)).length < 1e-3
+    # The library moves edges in that it has made simpler before, by a hundredth of how far it moves them at most.
+    assert lines.difference(inner.buffer(1e-3 + 0.01 * options.from_edge_mm)).length < 1e-3
     ink = lines.buffer(0.501 * spacing, quad_segs=4)  # within the round ink, and made in half the time
     # A sliver that is narrower than the spacing may lie between two rows.
     slivers = inner.difference(inner.buffer(-0.5 * spacing).buffer(0.5 * spacing)).area
