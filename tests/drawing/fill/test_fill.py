@@ -89,8 +89,10 @@ def test_any_area_is_covered_and_nothing_else(
     assume(area.area > 1.0)
     inner = area.buffer(-options.from_edge_mm)
     lines = inked(on_paper(read(f'<path fill-rule="{rule}" d="{path}"/>'), options))
-    # The library moves edges in that it has made simpler before, by a hundredth of how far it moves them at most.
-    assert lines.difference(inner.buffer(1e-3 + 0.01 * options.from_edge_mm)).length < 1e-3
+    # An edge that the library moves in has been made simpler before: what is outside of that may yet be far enough in.
+    beyond = lines.difference(inner.buffer(1e-3))
+    is_in = area.covers(beyond) and beyond.distance(area.boundary) >= options.from_edge_mm - 1e-3
+    assert beyond.length < 1e-3 or is_in
     ink = lines.buffer(0.501 * spacing, quad_segs=4)  # within the round ink, and made in half the time
     # A sliver that is narrower than the spacing may lie between two rows.
     slivers = inner.difference(inner.buffer(-0.5 * spacing).buffer(0.5 * spacing)).area

@@ -14,7 +14,7 @@ from hardware.codecs.native import Order, State
 from tests.hardware.drivers.native.runs import JOINTS, RANGE_US, Console
 from tests.hardware.emulator.emulator import Build, LockStep, in_lock_step
 
-_FRAMES = 50_000
+_FRAMES = 100_000
 _KINDS = [*Order, 0x00, 0x0A, 0x10, 0x11, 0x81, 0x82, 0xFF]
 _TICK_US = 0.5
 """The edges of a pulse are right to a tick."""
