@@ -13,7 +13,8 @@ _GAP_MM = 1e4
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Segments:
-    """Segments of curves, found by where they are.
+    """Segments of curves, found by where they are: few are asked for in a plan, and a library's index takes longer to
+    load.
 
     begins_mm, ends_mm: (n, 2) curve after curve, ordered by across_mm: (n,) the first coordinate of their begins, with
     a gap between the curves; longest_mm: how far a segment may reach.

@@ -12,18 +12,16 @@ from planner.arms.description import arm_description
 from planner.arrays import FloatArray
 from planner.pens import hex_of
 from planner.pictures import motion_for_film
-from planner.plots.film_values import film_of
+from planner.plots.film_values import MOST_POSES, film_of
 from planner.plots.motion import link_thicknesses_mm
 from planner.plots.samples import finite_difference
 from planner.trajectory import Trajectory
-
-_MOST_POSES = 20_000
 
 
 def film_view(trajectory: Trajectory, arm: Arm) -> dict[str, Any]:
     """The film, with the joints' positions, extremes and limits in the units of the arm file, how thick links are,
     where the paper is in the base frame, and what is drawn by which pen. Plain values for JSON."""
-    every = max(-(-trajectory.n_samples // _MOST_POSES), 1)
+    every = max(-(-trajectory.n_samples // MOST_POSES), 1)
     return film_of(motion_for_film(trajectory, arm)) | {
         "n_samples": trajectory.n_samples,
         "every": every,

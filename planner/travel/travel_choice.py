@@ -156,7 +156,8 @@ def _quickest_from(
     for first in range(0, len(_SHARES), at_once):
         shares = _SHARES[first : first + at_once]
         move, share = np.repeat(np.arange(n_travel_moves), len(shares)), np.tile(shares, n_travel_moves)
-        over_s = rest_to_rest_s(coordinate_limits(slopes.along[move], rest_of(slopes.subset(move), limits, share)))
+        some = slopes.subset(move)
+        over_s = rest_to_rest_s(coordinate_limits(some.along, rest_of(some, limits, share)))
         jerk = share[:, None] * np.minimum(up_jerk, down_jerk)[move]
         up, down = (up_speed[move], up_acceleration[move]), (down_speed[move], down_acceleration[move])
         turn_s, excess_mm = _turn(up, down, jerk)

@@ -61,10 +61,8 @@ _LITTLE = 1.02
 """What a travel move may be slowed by without a look for another."""
 _SHARES = (0.7, 0.5, 0.35, 0.25, 0.18)
 """Such a travel move is tried with so much of the limits: one share after the other, as long as that helps."""
-_TEMPERED = (
-    (False, ((1, 1, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1))),
-    (True, ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1))),
-)
+_PARTLY = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1))
+_TEMPERED = ((False, ((1, 1, 0), *_PARTLY)), (True, ((0, 0, 0), *_PARTLY)))
 """What has the share: the jerk of all joints; the limits for the height, and for the way; and the handover is as many
 times as high as it has to be."""
 _SAMPLES_AT_ONCE = 100_000
@@ -155,8 +153,10 @@ def _along(kinematics: Kinematics, limits: Limits, rules: TravelRules, shapes: S
     moves = _made(kinematics, limits, rules, plans, np.full(len(plans), np.inf))
     slow = np.flatnonzero([_is_slowed(plan, move, rules) for plan, move in zip(plans, moves, strict=True)])
     for share in _SHARES:
+        if not len(slow):
+            break
         helped: set[int] = set()
-        for with_jerk, tempers in _TEMPERED if len(slow) else ():
+        for with_jerk, tempers in _TEMPERED:
             one = np.repeat(slow, len(tempers))
             height, way, handover = np.tile(share ** np.array(tempers, dtype=float).T, len(slow))
             less = replace(limits, jerk=share * limits.jerk) if with_jerk else limits

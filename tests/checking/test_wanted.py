@@ -40,7 +40,7 @@ def shapes(draw: st.DrawFn) -> Shape:
     if draw(st.booleans()):
         closed = polyline(np.concatenate((path.beziers[:, 0], path.beziers[-1:, 3])), is_closed=True)
         return Shape((closed,), (closed,), draw(st.sampled_from([INK, GLASS])), draw(st.booleans()), None, clips, "")
-    dashes: tuple[list[float], float] = draw(st.sampled_from([([], 0.0), ([7.0, 3.0], 2.0), ([9.0, 0.3], 0.0)]))
+    dashes: tuple[list[float], float] = draw(st.sampled_from([([], 0.0), ([7.0, 3.0], 2.0), ([3.0, 0.3], 0.0)]))
     return Shape((path,), tuple(dashed([path], *dashes)), None, False, Stroke(INK, 1.0), clips, "")
 
 
